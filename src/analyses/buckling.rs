@@ -40,7 +40,7 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Buckl
     let geometric = model.effects.geometric(&model.body(), &pattern)?.ok_or(Error::NoPreload)?;
     stopwatch.lap("assemble");
     let mut buckling = factors(&mut assembled.structure, &geometric, count)?;
-    let softness = supports::soft_shapes(model, &mut assembled, &buckling.shapes);
+    let softness = supports::soft_shapes(model, &mut assembled.structure, &buckling.shapes);
     let mut u = vec![0.0; model.plate.ndof()];
     for shape in buckling.shapes.chunks_exact_mut(model.constraints.ndof().max(1)) {
         model.constraints.expand(shape, &mut u);

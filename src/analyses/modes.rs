@@ -46,7 +46,7 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Modes
     let mut assembled = assembled::structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let mut modes = modes::lowest(&mut assembled.structure, count, !model.held)?;
-    let softness = supports::soft_shapes(model, &mut assembled, &modes.shapes);
+    let softness = supports::soft_shapes(model, &mut assembled.structure, &modes.shapes);
     (counters.factorisations, counters.solves) = assembled.structure.work();
     modes.shapes = assembled.expand(modes.shapes);
     let n = model.constraints.ndof();

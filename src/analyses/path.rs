@@ -1,11 +1,13 @@
 //! Loads at rest that grow through what interfaces do.
 
 use super::delamination::{Delaminated, Onsets, separable_parts};
+use super::supports;
 use crate::error::Error;
 use crate::model::{PathPlan, Separation};
 use crate::{cost::Stopwatch, model::Model};
 use fem_core::assembly::{Path, PathEnd, PathError, PathPoint, Separable, pattern};
 use fem_core::counters::Counters;
+use fem_core::functional::Functional;
 use fem_core::interfaces::Interfaces;
 use fem_core::structure::SolveError;
 use std::num::NonZeroUsize;
@@ -51,6 +53,8 @@ pub(super) struct End {
     pub(super) u: Vec<f64>,
     pub(super) factor_entries: usize,
     pub(super) last: PathPoint,
+    /// What [`supports::soft_under`] says of its loads.
+    pub(super) softness: Option<f64>,
 }
 
 /// Follows the loads `plan` of a `model` whose interfaces are `separation`.
@@ -70,6 +74,9 @@ pub(super) fn follow(
     states.resize(states.len() + parts.plies.as_ref().map_or(0, |plies| plies.states()), 0.0);
     let mut plate = Separable::new(parts, &states, false, threads).map_err(SolveError::from)?;
     stopwatch.lap("assemble");
+    let mut load = vec![0.0; plate.ndof()];
+    Functional(model.constraints.restrict(&plan.load.0)).add_to(1.0, &mut load);
+    let softness = supports::soft_under(model, &mut plate, &load);
     let mut seen: Vec<PathState> = Vec::new();
     let (mut last, mut broken_off) = (None, false);
     let mut path = Path::new(&mut plate, plan.load.0.clone(), plan.step, states);
@@ -114,7 +121,7 @@ pub(super) fn follow(
     let cells = separation.interfaces.cells().len();
     let delaminated = Onsets::new(cells).finish(separation, &ended[..separation.interfaces.states()]);
     let (_, factor_entries) = plate.size();
-    Ok(End { followed: Followed { states: seen, delaminated, stopped }, u, factor_entries, last })
+    Ok(End { followed: Followed { states: seen, delaminated, stopped }, u, factor_entries, last, softness })
 }
 
 const AT_REST: PathState = PathState {

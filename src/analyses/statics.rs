@@ -267,7 +267,7 @@ fn linear(
     assembled.structure.solve_shifted(0.0, &mut more, 1)?;
     assembled.structure.add_stiffness(-1.0, &more, &mut rest);
     solved.iter_mut().zip(&more).for_each(|(u, more)| *u += more);
-    let softness = supports::soft(model, &mut assembled, (&own_load, &solved));
+    let softness = supports::soft(model, &mut assembled.structure, (&own_load, &solved));
     let mut independent = assembled.expand(solved);
     independent.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -343,6 +343,7 @@ fn lifting(
     let assembled = assembled::structure(model, false, threads, counters)?;
     stopwatch.lap("assemble");
     let (mut structure, factor_entries, buckling) = (assembled.structure, assembled.factor_entries, assembled.buckling);
+    let softness = supports::soft_under(model, &mut structure, f);
     let springs = model.one_sided().map(|spring| OneSided { at: spring.at.clone(), stiffness: spring.stiffness });
     let mut lifting = Lifting::new(springs.collect());
     let mut independent = f.to_vec();
@@ -364,7 +365,7 @@ fn lifting(
         buckling,
         residual: norm(&rest) / norm(f).max(f64::MIN_POSITIVE),
         condition,
-        softness: None,
+        softness,
         stressed: None,
         decrements: None,
         followed: None,
@@ -392,7 +393,11 @@ fn nonlinear(
         false => vec![0.0; f.len()],
     };
     let found = equilibrium(&mut large, symbolic, f, start, threads)?;
-    Ok(Found { factor_entries, ..Found::of(found, large.integrated(), counters) })
+    let softness = match model.between[..] {
+        [] => None,
+        _ => supports::soft_under(model, &mut assembled::structure(model, false, threads, counters)?.structure, f),
+    };
+    Ok(Found { factor_entries, softness, ..Found::of(found, large.integrated(), counters) })
 }
 
 /// Interfaces that open, step by step.
@@ -406,7 +411,7 @@ fn followed(
     let (Some(separation), Plan::Static { path: Some(plan), .. }) = (&model.separation, &model.plan) else {
         return Err(Error::NoLoads);
     };
-    let path::End { followed, u, factor_entries, last } =
+    let path::End { followed, u, factor_entries, last, softness } =
         path::follow(model, (plan, separation), (threads, watch), counters, stopwatch)?;
     Ok(Found {
         independent: u,
@@ -416,7 +421,7 @@ fn followed(
         energy: last.energy,
         residual: last.residual,
         condition: None,
-        softness: None,
+        softness,
         stressed: None,
         decrements: None,
         followed: Some(followed),
@@ -438,8 +443,9 @@ fn lawful(
         let Some((forces, _)) = effect.forces(&model.body())? else { continue };
         f.iter_mut().zip(&forces).for_each(|(f, force)| *f += force);
     }
-    let assembled = assembled::structure(model, false, threads, counters)?;
+    let mut assembled = assembled::structure(model, false, threads, counters)?;
     stopwatch.lap("assemble");
+    let softness = supports::soft_under(model, &mut assembled.structure, &f);
     let (k, _) = assembled.structure.matrices();
     let (symbolic, _) = model.analyse(k.pattern().clone())?;
     let virgin = vec![0.0; laws.states()];
@@ -447,7 +453,7 @@ fn lawful(
     laws.share(threads);
     let found = equilibrium(&mut laws.on(k, &virgin), symbolic, &f, vec![0.0; f.len()], threads)?;
     let factor_entries = assembled.factor_entries;
-    Ok(Found { factor_entries, ..Found::of(found, laws.integrated(), counters) })
+    Ok(Found { factor_entries, softness, ..Found::of(found, laws.integrated(), counters) })
 }
 
 /// The unknown of a translation along axis `n`, counted from 1.

@@ -38,6 +38,47 @@ fn what_is_free_between_nodes_is_said_with_its_number() {
     }
 }
 
+/// So is a section, whose nodes stand between two vertices.
+#[test]
+fn a_section_says_it_as_well() {
+    let plate = plate(4.0, 1).element("kind = 'webster-beam', state = 'plane-strain'").rectangle([8.32, 1.0], [8, 1]);
+    let held = plate.sides([Side::Clamped, Side::Free, Side::Free, Side::Free]);
+    let text = values(&held.text("static")).replace("'U10', 'U20', 'U30'", "'U10', 'U30'");
+    let scene = fem::io::scene::parse(&text, "scene.toml".as_ref()).unwrap();
+    let model = fem::Model::new(scene, &fem::Registry::standard()).unwrap();
+    let free = fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap();
+    let actual = 1.0 - held.solve().strain_energy / free.strain_energy;
+    let said = free.softness.unwrap();
+    assert!(actual > 0.02 && (said / actual - 1.0).abs() < 0.05, "{said} {actual}");
+}
+
+/// Whatever solves for rest: small loads on a plate of the same layers, whose interfaces are closed.
+#[test]
+fn every_way_to_rest_says_it() {
+    let solve = |effects: &str, law: &str, support: &str, path: &str| {
+        let text = format!(
+            "title = 'plate'\nanalysis = 'static'\nmesh = {{ rectangle = ['9 mm', '6 mm'], cells = [3, 2] }}\n\
+             element = {{ kind = 'hermite-prism' }}\neffects = {{ damage = 'off', {effects} }}\n{path}\
+             laminate = {{ plies = '[0/90]', material = 'tape', ply_thickness = '1 mm', layers = [1, 1] }}\n\
+             support = [{{ group = 'x-min', at = 'all', fix = ['U10', 'U20', 'U30'] }}{support}]\n\
+             load = [{{ pressure = '1 Pa' }}]\n[materials.tape]\nlibrary = 'AS4/3502'\nZt = '64 MPa'\nS13 = '109 MPa'\nS23 = '60 MPa'\nGIc = '0.2 N/mm'\nGIIc = '0.6 N/mm'\neta = 1.5\n{law}"
+        );
+        let scene = fem::io::scene::parse(&text, "scene.toml".as_ref()).unwrap();
+        let model = fem::Model::new(scene, &fem::Registry::standard()).unwrap();
+        fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap().softness.unwrap()
+    };
+    let linear = solve("", "", "", "");
+    let path = "delamination = { penalty = '1e5 N/mm^3' }\n\
+                path = { until = '1e-9 mm', step = '1 J' }\n";
+    let ways = [
+        solve("membrane = 'on'", "", "", ""),
+        solve("", "law = { name = 'hahn-tsai', alpha = '2.44e-8 1/MPa^3' }", "", ""),
+        solve("", "", ", { group = 'x-max', kind = 'rest', stiffness = '1e-6 N/mm^2' }", ""),
+        solve("delamination = 'growth'", "", "", path),
+    ];
+    assert!(linear > 0.02 && ways.iter().all(|way| (way / linear - 1.0).abs() < 0.02), "{linear}: {ways:?}");
+}
+
 /// So are modes and load factors, whose stiffness is that of the loads that would hold the plate in their shapes.
 #[test]
 fn modes_and_buckling_say_it_as_well() {

@@ -17,7 +17,11 @@ pub fn between(
 ) -> Vec<Vec<(usize, f64)>> {
     let turn = axes_at(angle);
     let mut found = Vec::new();
-    for (column, courses) in plate.plane.courses(group) {
+    let of_vertices = plate.plane.courses(group);
+    for column in plate.columns_of_group(group) {
+        // The nodes of a section stand between two vertices.
+        let vertex = plate.ends(column as usize).map_or(column, |[end, _]| end);
+        let Some(courses) = of_vertices.get(&vertex) else { continue };
         let levels = levels(column);
         let column = column as usize;
         for level in &levels {
@@ -34,10 +38,9 @@ pub fn between(
                     terms
                 };
                 let up = [0, 1].map(|side| (levels.len() > 1).then(|| along([0.0, 0.0, 1.0], side)));
-                let sides = if plate.is_on_seam(column, *level) { 0..2 } else { 0..1 };
-                found.extend(
-                    courses.iter().flat_map(|course| sides.clone().map(|side| along(axes_at(course.angle)[0], side))),
-                );
+                // A second set belongs to the other side of a line, or of an interface that may open.
+                found
+                    .extend(courses.iter().flat_map(|course| [0, 1].map(|side| along(axes_at(course.angle)[0], side))));
                 found.extend(up.into_iter().flatten());
             }
         }

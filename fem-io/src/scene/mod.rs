@@ -441,10 +441,10 @@ fn read_count(root: &Reader<'_>, key: &str, keys: Keys, default: usize) -> Resul
     field.table(keys)?.optional("count").map_or(Ok(default), |field| field.count())
 }
 
-/// `shared` where neither scene nor preset says.
+/// `layer-wise` where neither scene nor preset says.
 fn read_z_derivatives(element: &SceneValue<'_>) -> Result<Located<ZDerivatives>, SceneError> {
     match element.entries()?.iter().find(|(key, _)| *key == "z_derivatives") {
         Some((_, field)) => Ok(field.at(field.choice(&Z_DERIVATIVES)?)),
-        None => Ok(element.at(ZDerivatives::Shared)),
+        None => Ok(element.at(ZDerivatives::LayerWise)),
     }
 }

@@ -68,7 +68,7 @@ pub(super) const KEYS: Keys = &[
                 r#""layer-wise""#,
                 "whether layers of cells share their derivatives along z",
             )
-            .default(r#""shared""#)],
+            .default(r#""layer-wise""#)],
         ),
         r#"{ kind = "hermite-prism" }"#,
         "element of the cells: `fem list elements`",

@@ -247,6 +247,10 @@ fn presets_lie_beneath_the_scene() {
         over("element.z_derivatives = \"layer-wise\"").element.params.get("mass"),
         Some(&Value::Text("linear".into()))
     );
+    let beam = read_good(&format!(
+        "fidelity = \"report\"\nelement = {{ kind = \"webster-beam\", state = \"plane-strain\" }}\n{GOOD}"
+    ));
+    assert_eq!(beam.z_derivatives.value, ZDerivatives::LayerWise, "whatever the preset says of its own element");
     let other = over("reduction = { method = \"modal\", modes = 5 }").impact().unwrap().reduction.clone();
     assert_eq!(
         other.params.keys().collect::<Vec<_>>(),

@@ -283,6 +283,11 @@ fn prepare_separable<'a>(
         }
         _ => None,
     };
+    let softness = contacts.first().and_then(|contact| {
+        let mut load = vec![0.0; ndof];
+        contact.add_to(1.0, &mut load);
+        supports::soft_under(model, &mut structure, &load)
+    });
     let mut effects = model.effects.acting().to_vec();
     let (struck, (_, step)) = (distinct(&contacts), impact.spec.march.steps());
     let mut stretch = None;
@@ -300,9 +305,16 @@ fn prepare_separable<'a>(
     };
     let system = ImpactSystem::new(structure, impactors).with_tips(tips);
     let mut system = couple(model, system, None, &mut effects);
-    let (buckling, substructures, softness, squeezed) = (None, None, None, compliances);
-    let before =
-        Before { stiffness_entries, factor_entries, buckling, substructures, memory, softness, squeezes: squeezed };
+    let (buckling, substructures, squeezes_at_rest) = (None, None, compliances);
+    let before = Before {
+        stiffness_entries,
+        factor_entries,
+        buckling,
+        substructures,
+        memory,
+        softness,
+        squeezes: squeezes_at_rest,
+    };
     let sizes = check_step(model, impact, &mut system, None, before)?;
     let sizes = Sizes { static_stiffness: stiffness.unwrap_or(sizes.static_stiffness), ..sizes };
     Ok(Prepared {
@@ -345,19 +357,16 @@ fn squeezes(impact: &Impact, assembled: &mut Assembled, contacts: &[Functional])
 /// What supports of nodal values cost under the first impactor.
 fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional], reduced: Option<&Reduced>) -> Option<f64> {
     let contact = contacts.first().filter(|_| !model.between.is_empty())?;
-    let mut load = vec![0.0; assembled.structure.ndof()];
+    let structure = &mut assembled.structure;
+    let mut load = vec![0.0; structure.ndof()];
     contact.add_to(1.0, &mut load);
+    let Some(reduced) = reduced else { return supports::soft_under(model, structure, &load) };
+    // The response to the contact is in the space.
     let mut u = load.clone();
-    match reduced {
-        // The response to the contact is in the space.
-        Some(reduced) => {
-            let modes = reduced.basis.chunks_exact(load.len()).zip(reduced.modal.compliances());
-            let q: Vec<f64> = modes.map(|(mode, compliance)| compliance * contact.of(mode)).collect();
-            reduced.expand(&q, &mut u);
-        }
-        None => assembled.structure.solve_shifted(0.0, &mut u, 1).ok()?,
-    }
-    supports::soft(model, assembled, (&load, &u))
+    let modes = reduced.basis.chunks_exact(load.len()).zip(reduced.modal.compliances());
+    let q: Vec<f64> = modes.map(|(mode, compliance)| compliance * contact.of(mode)).collect();
+    reduced.expand(&q, &mut u);
+    supports::soft(model, structure, (&load, &u))
 }
 
 /// What is known of a plate before it is marched.
