@@ -471,6 +471,45 @@ fn stresses_in_the_plane_of_a_linear_plate() {
     let (said, left_out) = share(&solid.replace("[16, 16]", "[8, 8]"));
     let said = said.unwrap_or_default();
     assert!((said - left_out).abs() < 0.1 * left_out, "{said} and {left_out}");
+    // Shear, which adds to the stiffness along one diagonal what it takes along the other: in second order alone.
+    let sheared = |load: &str, n: f64| {
+        let along = |edge: &str, along: usize, n: f64| {
+            let mut force = [0.0; 3];
+            force[along] = n;
+            format!("{{ group = '{edge}', force_per_length = {:?} }}", force.map(|f| format!("{f} N/mm")))
+        };
+        let edges = [along("x-min", 1, -n), along("x-max", 1, n), along("y-min", 0, -n), along("y-max", 0, n)];
+        let text = framed(&format!("load = [{load} {}]", edges.join(", ")), "");
+        text.replace("'clamped'", "'roller'").replace("support = [", "support = [{ restrain = 'rigid-motions' }, ")
+    };
+    for n in [20.0, 30.0] {
+        let (said, left_out) = share(&sheared("{ pressure = '10 Pa' },", n));
+        let said = said.unwrap_or_default();
+        assert!((said - left_out).abs() < 0.1 * left_out, "{n} N/mm: {said} and {left_out}");
+        // By itself it deflects nothing.
+        assert_eq!(share(&sheared("", n)).0, None);
+    }
+    // Nor does weight along the plate, for which a solid swells and shrinks.
+    let hung = framed("load = [{ gravity = ['9.81 km/s^2', '0 m/s^2', '0 m/s^2'] }]", "");
+    let hung = hung.replace("'mitc4'", "'hermite-prism'").replace("[16, 16]", "[4, 4]") + "density = '2.7 g/cm^3'\n";
+    assert_eq!(share(&hung).0, None);
+    // Plies that lie unsymmetrically deflect as they are pulled.
+    let pulled = framed(
+        "load = [{ group = 'x-min', force_per_length = ['-0.5 N/mm', '0 N/mm', '0 N/mm'] }, { group = 'x-max', force_per_length = ['0.5 N/mm', '0 N/mm', '0 N/mm'] }]",
+        "",
+    );
+    let pulled = pulled
+        .replace("'[0]'", "'[0/90]'")
+        .replace("'1 mm'", "'0.5 mm'")
+        .replace("e = '70 GPa'\nnu = 0.3\nalpha = '23e-6 1/K'", "library = 'AS4/3502'")
+        .replace(
+            "{ group = 'y-min', kind = 'clamped' }, { group = 'y-max', kind = 'clamped' }",
+            "{ restrain = 'rigid-motions' }",
+        )
+        .replace("'clamped'", "'roller'");
+    let (said, left_out) = share(&pulled);
+    let said = said.unwrap_or_default();
+    assert!((said - left_out).abs() < 0.1 * left_out.abs(), "{said} and {left_out}");
     // Heated without a load it does not deflect, and yet it buckles: at 5.30 π² D/a² (Timoshenko and Gere), in these cells some 2 % above.
     let said = plate().text(&framed("", "effects = { cure = '40 K' }")).fem("run", &["--out", "out"]).good().stdout;
     let (pressed, critical) =

@@ -14,6 +14,7 @@ mod samples;
 pub(crate) mod saved;
 pub mod statics;
 pub mod stress;
+mod stressed;
 mod supports;
 
 pub(crate) use expansion::Stressed;

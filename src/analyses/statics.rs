@@ -1,13 +1,15 @@
 //! Displacements, stresses and margins under loads at rest.
 
-use super::assembled::{self, Assembled, Substructures};
+use super::assembled::{self, Substructures};
 pub use super::path::{Followed, PathState};
 use super::stress::{self, Margin};
+pub use super::stressed::Stressed;
+use super::stressed::stressed;
 use super::{path, supports};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
-use fem_core::assembly::{Equilibrium, LargePlate, LawPlate, Symmetric, add_geometric_stiffness, equilibrium, pattern};
+use fem_core::assembly::{Equilibrium, LargePlate, LawPlate, equilibrium, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::element::ElementError;
@@ -74,15 +76,6 @@ pub struct StaticSolution {
     pub counters: Counters,
     /// Time per phase.
     pub phases: Vec<Phase>,
-}
-
-/// What stresses in the plane do, and a linear plate leaves out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stressed {
-    /// Share of its stiffness against this deflection that they take, negative where they add to it; `None` where it does not deflect.
-    pub takes: Option<f64>,
-    /// Part of them that buckles the plate, where that is less than all.
-    pub buckles: Option<f64>,
 }
 
 /// Displacements of the independent unknowns, and how they were found.
@@ -291,46 +284,6 @@ fn linear(
         followed: None,
     })
 }
-
-/// [`StaticSolution::stressed`] at `u`: with the geometric stiffness G of the stresses there, g = G w of the deflections alone and K δ = g, they
-/// take −gᵀδ/gᵀw, which is the load over the one that buckles the plate where it deflects as it buckles.
-///
-/// # Errors
-/// A stiffness that cannot be factorised.
-fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> Result<Option<Stressed>, Error> {
-    let Model { plate, element, constraints, plan, effects, .. } = model;
-    let along = |dof: usize| [1, 2].map(dof_of).contains(&plate.locate(dof).2);
-    let pulled =
-        matches!(plan, Plan::Static { forces, .. } if (0..).zip(forces).any(|(dof, f)| *f != 0.0 && along(dof)));
-    let nature = effects.nature();
-    let told = nature.large || assembled.condensation.is_some() || element.large_deflections().is_none();
-    if told || !(pulled || nature.strained) {
-        return Ok(None);
-    }
-    let mut all = vec![0.0; plate.ndof()];
-    constraints.expand(u, &mut all);
-    let mut geometric = Symmetric::zero(assembled.structure.matrices().0.pattern().clone());
-    // Of a mesh with triangles, one form of the element may know no large deflections.
-    if add_geometric_stiffness(plate, &**element, constraints, &all, &mut geometric).is_err() {
-        return Ok(None);
-    }
-    let deflects = |i: usize| plate.locate(constraints.original(i)).2.n() == 3;
-    let w: Vec<f64> = u.iter().enumerate().map(|(i, u)| if deflects(i) { *u } else { 0.0 }).collect();
-    let mut g = vec![0.0; u.len()];
-    geometric.add_product(1.0, &w, &mut g);
-    let mut more = g.clone();
-    assembled.structure.solve_shifted(0.0, &mut more, 1)?;
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let takes = Some(-dot(&g, &more) / dot(&g, &w)).filter(|share| share.abs() > WORTH);
-    let factors =
-        assembled::factors(&mut assembled.structure, &geometric, assembled::FACTORS).map(|found| found.factors);
-    let buckles = factors.unwrap_or_default().into_iter().filter(|factor| *factor > 0.0).min_by(f64::total_cmp);
-    let buckles = buckles.filter(|factor| *factor < 1.0);
-    Ok((takes.is_some() || buckles.is_some()).then_some(Stressed { takes, buckles }))
-}
-
-/// Share of the stiffness from which on the user should know of what a linear plate leaves out.
-const WORTH: f64 = 0.02;
 
 /// On springs that only push.
 fn lifting(

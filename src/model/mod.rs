@@ -19,6 +19,7 @@ mod preload;
 mod regions;
 mod separation;
 mod spacing;
+mod span;
 mod springs;
 mod still;
 mod strike;
@@ -274,8 +275,11 @@ impl Model {
         warnings.extend(incompressible(&plate, &laminates, &materials));
         warnings.extend(constants::unlikely(&laminates, &materials));
         warnings.extend(constants::twice(&laminates, &materials, &scene.laws));
-        warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
         let mut supports = builder.constraints(&plate, &*element)?;
+        if shell {
+            let span = span::of(&plate, &supports);
+            warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(laminate, &materials, span)));
+        }
         builder.check_springs(&plate, &supports.springs, &effects)?;
         builder.preload(&plate, &*element, &supports, &mut effects)?;
         let constraints = &supports.constraints;
@@ -565,10 +569,9 @@ fn warn_of_flat_cells(plate: &Plate) -> Option<String> {
 }
 
 /// A shell whose section warps more than first-order shear deformation knows.
-fn warn_of_warping(plate: &Plate, laminate: &Laminate, materials: &[Material]) -> Option<String> {
-    let (low, high) = plate.plane.bounds();
-    let excess = warping::shell_excess(laminate, materials, (high[0] - low[0]).min(high[1] - low[1]));
-    (plate.info().is_shell() && excess > WARPING_ERROR).then(|| {
+fn warn_of_warping(laminate: &Laminate, materials: &[Material], span: f64) -> Option<String> {
+    let excess = warping::shell_excess(laminate, materials, span);
+    (excess > WARPING_ERROR).then(|| {
         format!(
             "the section of this laminate warps, which a shell cannot: deflections are too large by about {:.0} %; use the \
              solid `hermite-prism`",

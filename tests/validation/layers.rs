@@ -1,7 +1,7 @@
 //! Many plies in a layer of cells, whose transverse stresses are smooth: against exact elasticity and against a layer per ply.
 
 use super::pagano::{EIGHT, Mesh, SIXTEEN, THREE};
-use super::scene::{PAGANO, Plate, farthest, largest};
+use super::scene::{PAGANO, Plate, Side, farthest, largest};
 use fem::core::profile::ProfilePoint;
 use std::f64::consts::PI;
 
@@ -42,16 +42,19 @@ fn cross_plies_in_one_layer_and_in_two() {
     }
 }
 
-/// A simply supported sandwich under a sine pressure.
-fn sandwich(plies: &str, layers: &[usize], element: &str) -> Plate {
+/// A sandwich.
+fn cored(plies: &str, layers: &[usize], element: &str) -> Plate {
     const CORE: &str = "e1 = '0.1 MPa'\ne2 = '0.1 MPa'\ne3 = '0.1 MPa'\nnu12 = 0.25\nnu13 = 0.25\nnu23 = 0.25\n\
                         g12 = '0.04 MPa'\ng13 = '0.04 MPa'\ng23 = '0.04 MPa'\n";
-    let (side, wave) = (10.0, PI / 10.0);
     Plate::new(&format!("{PAGANO}[materials.core]\n{CORE}"), plies, 0.125, layers.to_vec())
         .with("[laminate.ply.core]\nmaterial = 'core'\nthickness = '2.5 mm'")
-        .rectangle([0.5 * side; 2], [6; 2])
-        .pressure(&format!("-sin({wave}*x)*sin({wave}*y)"))
         .element(element)
+}
+
+/// The same, simply supported under a sine pressure.
+fn sandwich(plies: &str, layers: &[usize], element: &str) -> Plate {
+    let (side, wave) = (10.0, PI / 10.0);
+    cored(plies, layers, element).rectangle([0.5 * side; 2], [6; 2]).pressure(&format!("-sin({wave}*x)*sin({wave}*y)"))
 }
 
 fn energy(plies: &str, layers: &[usize], element: &str) -> f64 {
@@ -70,7 +73,7 @@ fn sandwiches_in_one_layer() {
     }
 }
 
-/// A shell on a soft core says by how much it is too soft.
+/// A shell with a soft core says by how much it is too soft.
 #[test]
 fn a_shell_whose_section_warps_is_warned_of() {
     let plies = "[0/90/0{core}/90/0]";
@@ -80,11 +83,28 @@ fn a_shell_whose_section_warps_is_warned_of() {
         let (_, number) = warning.split_once("deflections are too large by about ")?;
         number.split_once(" %")?.0.parse::<f64>().ok()
     });
-    // Of the bottom face: the pressure squeezes the top one into the core, which is none of a shell's business.
-    let deflection = |plate: Plate| plate.profile([5.0; 2], 2).solve().profiles[0][0].displacement[2];
-    let actual = 100.0 * (deflection(plate) / deflection(sandwich(plies, &[1; 5], SMOOTH)) - 1.0);
+    // Of the middle of the core, which the pressure on the top squeezes below and above it as well: none of a shell's business.
+    let deflection = |plate: Plate, at: [f64; 2]| {
+        let middle = plate.profile(at, 3).solve().profiles[0].swap_remove(7);
+        assert!(middle.z.abs() < 1e-9);
+        middle.displacement[2]
+    };
+    let actual = 100.0 * (deflection(plate, [5.0; 2]) / deflection(sandwich(plies, &[1; 5], SMOOTH), [5.0; 2]) - 1.0);
     let said = said.unwrap_or_else(|| panic!("{actual} %: {warnings:?}"));
     assert!((0.5..2.0).contains(&(said / actual)), "{said} %, and it is {actual} %");
+    // Of a strip it is the length between its supports that counts, and not its width.
+    let strip = |element: &str, layers: &[usize], length: f64| {
+        let strip = cored(plies, layers, element).rectangle([length, 2.0], [32, 2]).pressure("-1");
+        strip.sides([Side::Supported, Side::Supported, Side::Free, Side::Free])
+    };
+    let warps = |plate: &Plate| plate.model("static").warnings.iter().any(|warning| warning.contains("warps"));
+    for (length, warned) in [(7.0, true), (80.0, false)] {
+        let [shell, solid] = [strip("kind = 'mitc4'", &[5], length), strip(SMOOTH, &[1; 5], length)];
+        assert_eq!(warps(&shell), warned, "{length}");
+        let [shell, solid] = [shell, solid].map(|plate| deflection(plate, [0.5 * length, 1.0]));
+        let actual = shell / solid - 1.0;
+        assert_eq!(actual > 0.02, warned, "{length}: {actual}");
+    }
     let thin = THREE.plate(20.0, Mesh(4, 1), 2).element("kind = 'mitc4'");
     let thin = Plate { layers: vec![3], ..thin }.model("static").warnings;
     assert!(!thin.iter().any(|warning| warning.contains("warps")), "{thin:?}");
