@@ -9,7 +9,7 @@ use super::{path, supports};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
-use fem_core::assembly::{Equilibrium, LargePlate, LawPlate, equilibrium, pattern};
+use fem_core::assembly::{Equilibrium, EquilibriumError, FactorError, LargePlate, LawPlate, equilibrium, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::element::ElementError;
@@ -404,7 +404,13 @@ fn lawful(
     let virgin = vec![0.0; laws.states()];
     let mut laws = LawPlate::new(plate, element.clone(), constraints, laws.clone());
     laws.share(threads);
-    let found = equilibrium(&mut laws.on(k, &virgin), symbolic, &f, vec![0.0; f.len()], threads)?;
+    let found = equilibrium(&mut laws.on(k, &virgin), symbolic, &f, vec![0.0; f.len()], threads);
+    let found = found.map_err(|why| match why {
+        EquilibriumError::Factor(FactorError::NotPositive { .. }) | EquilibriumError::NoConvergence(_) => {
+            Error::Softened(why)
+        }
+        other => other.into(),
+    })?;
     let factor_entries = assembled.factor_entries;
     Ok(Found { factor_entries, softness, ..Found::of(found, laws.integrated(), counters) })
 }

@@ -57,7 +57,7 @@ impl fmt::Display for EquilibriumError {
         match self {
             Self::Assembly(error) => error.fmt(f),
             Self::Factor(FactorError::NotPositive { .. }) => f.write_str(
-                "the tangent stiffness is not positive definite: the plate buckles under this load, or is not held",
+                "the tangent stiffness is not positive definite: the plate gives way under this load, or is not held",
             ),
             Self::Factor(error) => error.fmt(f),
             Self::NoConvergence(decrement) => write!(
