@@ -9,6 +9,7 @@ mod gauge;
 mod heights;
 mod jumps;
 mod laws;
+mod loaded;
 mod locked;
 mod memory;
 mod mesh;
@@ -338,7 +339,11 @@ impl Model {
         warnings.extend(builder.spread_window(&plate, &watched));
         let gauges = builder.gauges(&plate, &laminates, &watched, &criteria)?;
         let fields = builder.fields(&plate, &centres, split.is_some())?;
-        let around = builder.find_centres((&plate, laminate.plies[0].angle), &watched, &centres);
+        let loaded = match &scene.analysis {
+            Analysis::Static(loads) => builder.loaded(&plate, loads)?,
+            _ => centres.clone(),
+        };
+        let around = builder.find_centres((&plate, laminate.plies[0].angle), &watched, &loaded);
         let (centres, centre_cells) = around.into_iter().unzip();
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         warnings.extend(resin.and_then(|resin| plan::warn_of_axes(&materials[resin], &criteria)));

@@ -22,16 +22,13 @@ use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
 use fem_dynamics::impact::Tip;
 use fem_io::scene::{
-    self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, Pressure, ProfileLine, SceneError, Window,
+    self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, ProfileLine, SceneError, Window,
 };
 use fem_io::units::parse_as;
 use std::collections::BTreeMap;
 
 /// Fewest cells whose stresses can be differentiated.
 const LEAST_CELLS: usize = 4;
-
-/// Share of a pressure that the cells may lose.
-const LOST: f64 = 0.01;
 
 /// Distance of two places that are the same, m.
 const SAME: f64 = 1e-9;
@@ -375,39 +372,6 @@ impl Builder<'_> {
                 .into());
         }
         Ok(())
-    }
-
-    /// What is lost of pressures that change faster than the cells are integrated.
-    pub(super) fn unresolved(&self, plate: &Plate, loads: &[Load]) -> Result<Vec<String>, SceneError> {
-        let mut warnings = Vec::new();
-        for (number, Load { kind, .. }) in loads.iter().enumerate() {
-            let LoadKind::Pressure { pressure: pressure @ Pressure::Formula { .. }, group, .. } = kind else {
-                continue;
-            };
-            let missed = load::unresolved(plate, self.pressed(plate, group)?, |at| pressure.at(at));
-            if !(missed <= LOST) {
-                warnings.push(format!(
-                    "the pressure of `load[{number}]` changes faster than the cells are integrated: with twice as many points its force differs \
-                     by {:.1} %; make the cells smaller where it changes",
-                    1e2 * missed
-                ));
-            }
-        }
-        Ok(warnings)
-    }
-
-    /// The cells that a pressure presses on.
-    fn pressed(&self, plate: &Plate, group: &Option<Located<String>>) -> Result<Vec<usize>, SceneError> {
-        let Some(name) = group else { return Ok((0..plate.plane.quads.len()).collect()) };
-        let quads: Vec<usize> = self.group(plate, name)?.quads.iter().map(|q| *q as usize).collect();
-        match quads.is_empty() {
-            true => Err(self.error(
-                name,
-                "the group has no cells that can move",
-                "a pressure acts on a surface that is not clamped",
-            )),
-            false => Ok(quads),
-        }
     }
 
     pub(super) fn profiles(&self, plate: &Plate, mirrors: &Mirrors) -> Result<Vec<NamedProfile>, SceneError> {

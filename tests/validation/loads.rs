@@ -185,10 +185,46 @@ fn a_pressure_that_changes_faster_than_cells_is_warned_of() {
     for (formula, lost) in [
         ("exp(-((x-11.3)/0.2)^2)", true),
         ("1/(x-11.3)", true),
+        // Of which no point of the integration sees anything.
+        ("exp(-((x-10)^2+(y-5)^2)/1e-4)", true),
         ("exp(-((x-11.3)/2)^2)", false),
         ("sin(3.14159*x/5)", false),
         ("0*x", false),
     ] {
         assert_eq!(warned(formula), lost, "{formula}");
     }
+}
+
+/// Under a load narrower than a cell windows hang on the load; what margins in large cells are off is said as well.
+#[test]
+fn margins_under_a_narrow_load() {
+    let solve = |load: &str, cells: usize| {
+        let edges =
+            ["x-min", "x-max", "y-min", "y-max"].map(|edge| format!("{{ group = '{edge}', kind = 'clamped' }}"));
+        let text = format!(
+            "title = 'plate'\nanalysis = 'static'\nelement = {{ kind = 'hermite-prism' }}\n\
+             mesh = {{ rectangle = ['45 mm', '45 mm'], cells = [{cells}, {cells}] }}\n\
+             laminate = {{ plies = '[0/90]s', material = 'm', ply_thickness = '0.5 mm', layers = [4] }}\n\
+             support = [{}]\nload = [{load}]\nfailure = {{ criteria = ['hashin-1980'] }}\n\
+             [materials.m]\nlibrary = 'AS4/3502'\n",
+            edges.join(", ")
+        );
+        let scene = scene::parse(&text, "scene.toml".as_ref()).unwrap();
+        let model = Model::new(scene, &Registry::standard()).unwrap();
+        let solution = fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap();
+        let summary = fem::output::statics::StaticSummary::new(&model, &solution);
+        let warned =
+            summary.warnings.iter().any(|said| said.contains("larger than the window of 2.54 mm: its margin follows"));
+        let margin = &summary.margins[0];
+        assert_eq!(warned, cells < 18, "{cells}: {margin:?}");
+        margin.reserve_factor
+    };
+    for load in [
+        "{ force = '1 kN', at = { x = '22.5 mm', y = '22.5 mm' }, patch_radius = '3 mm' }",
+        "{ pressure = { formula = 'exp(-((x-22.5)^2+(y-22.5)^2)/9)', unit = 'MPa', length = 'mm' } }",
+    ] {
+        let [large, coarse, fine] = [10, 16, 32].map(|cells| solve(load, cells));
+        assert!((coarse / fine - 1.0).abs() < 0.05 && (large / fine - 1.0).abs() < 0.15, "{large} {coarse} {fine}");
+    }
+    solve("{ pressure = '1 kPa' }", 9);
 }

@@ -85,23 +85,54 @@ pub fn pressure(
     }
 }
 
+/// Intervals of a cell's side between the places at which [`peak`] looks.
+const LOOKS: usize = 4;
+
+/// Times as large as at all points of the integration that a pressure between them is lost.
+const LOST: f64 = 10.0;
+
+/// Where |p| is largest over `quads`, and how large: of their corners and places between, the first of them.
+pub fn peak(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Option<([f64; 2], f64)> {
+    let places = quads.iter().flat_map(|quad| {
+        let cell = plate.cell(plate.cell_over(*quad, 0));
+        let domain = cell.corners.domain();
+        let (first, second, last) =
+            (domain.corners()[0], domain.corners()[1], domain.corners()[domain.corners().len() - 1]);
+        let at = move |[i, j]: [usize; 2]| {
+            let [i, j] = [i, j].map(|k| k as f64 / LOOKS as f64);
+            let local = [0, 1].map(|d| first[d] + i * (second[d] - first[d]) + j * (last[d] - first[d]));
+            let [x, y, _] = cell.position([local[0], local[1], 0.0]);
+            [x, y]
+        };
+        domain.lattice(LOOKS).into_iter().map(at)
+    });
+    let sized = places.map(|at| (at, p(at).abs())).filter(|(_, size)| *size > 0.0);
+    sized.reduce(|largest, next| if next.1 > largest.1 { next } else { largest })
+}
+
 /// What the integration of [`pressure`] makes of a pressure that changes within cells: Σ |∫ p dA − the same by twice as many points|
-/// over the cells, as a share of ∫ |p| dA by these.
-pub fn unresolved(plate: &Plate, quads: impl IntoIterator<Item = usize>, p: impl Fn([f64; 2]) -> f64) -> f64 {
-    let (mut missed, mut whole) = (0.0, 0.0);
+/// over the cells, as a share of ∫ |p| dA by these; all of it where they miss its [`peak`].
+pub fn unresolved(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> f64 {
+    let (mut missed, mut whole, mut largest) = (0.0, 0.0, 0.0);
     for quad in quads {
-        let cell = plate.cell(plate.cell_over(quad, 0));
+        let cell = plate.cell(plate.cell_over(*quad, 0));
         let [(coarse, _), (fine, size)] = [ORDER, 2 * ORDER].map(|order| {
             let each = cell.corners.domain().points(order).iter().map(|Point { at: [r, s], factors }| {
                 let [x, y, _] = cell.position([*r, *s, 0.0]);
-                p([x, y]) * cell.plane(*r, *s).det * factors[0] * factors[1]
+                let value = p([x, y]);
+                largest = f64::max(largest, value.abs());
+                value * cell.plane(*r, *s).det * factors[0] * factors[1]
             });
             each.fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()))
         });
         missed += f64::abs(coarse - fine);
         whole += size;
     }
-    if whole > 0.0 { missed / whole } else { 0.0 }
+    match peak(plate, quads, p) {
+        Some((_, peak)) if peak > LOST * largest => 1.0,
+        _ if whole > 0.0 => missed / whole,
+        _ => 0.0,
+    }
 }
 
 /// The deflection u₃ at the points of the integration over `face`, and the area that each stands for, m²: what springs under a

@@ -15,7 +15,7 @@ use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
 use crate::output::preload::PreloadFigures;
 use crate::output::slopes::warn_of_slopes;
-use crate::output::summary::{Advised, hindsights};
+use crate::output::summary::{Advised, hindsights, placed};
 use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use fem_core::plugin::Dimension;
 use fem_core::profile::{Choice, Resultants, Way};
@@ -184,6 +184,10 @@ impl StaticSummary {
                 .chain(solution.softness.map(warn_of_softness))
                 .chain(solution.stressed.map(warn_of_stresses))
                 .chain(profiles().flat_map(warn_of_transverse))
+                .chain(solution.margins.iter().filter_map(|margin| {
+                    let quad = model.plate.plane.quad_tags.iter().position(|tag| *tag == margin.cell)?;
+                    placed(model, (&margin.criterion, &margin.mode, "margin"), quad, [margin.x_m, margin.y_m])
+                }))
                 .collect(),
         }
     }

@@ -45,7 +45,7 @@ pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary
     found.extend(sticky(outcome));
     found.extend(rough(summary));
     found.extend(outcome.squeezes.iter().zip(&summary.impact).filter_map(stiff));
-    found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| placed(model, event)));
+    found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| onset(model, event)));
     found
 }
 
@@ -202,27 +202,35 @@ fn stiff((squeeze, figures): (&Option<Squeeze>, &ImpactFigures)) -> Option<Strin
 
 /// Whether there is a caution about the place of an onset.
 pub(crate) fn follows_mesh(model: &Model, event: &FailureEvent) -> bool {
-    placed(model, event).is_some()
+    onset(model, event).is_some()
 }
 
 /// An onset whose place is chosen by the mesh or by where the criteria look.
-fn placed(model: &Model, event: &FailureEvent) -> Option<String> {
-    let (mesh, quad) = (&model.plate.plane, event.cell as usize);
+fn onset(model: &Model, event: &FailureEvent) -> Option<String> {
     let [x, y, _] = event.position;
-    if model.centres.iter().any(|centre| centre.at == [x, y]) {
-        return None;
-    }
-    let name = || format!("{} {} at x, y = {}", event.criterion, event.mode, Dimension::LENGTH.list(&[x, y]));
+    placed(model, (&event.criterion, &event.mode, "time"), event.cell as usize, [x, y])
+}
+
+/// A mode of a criterion whose `what` follows the mesh or where the criteria look, by the place of a cell at which it is found.
+pub(crate) fn placed(
+    model: &Model,
+    (criterion, mode, what): (&str, &str, &str),
+    quad: usize,
+    [x, y]: [f64; 2],
+) -> Option<String> {
+    let mesh = &model.plate.plane;
+    let hangs_on_cell = model.centres.iter().all(|centre| centre.at != [x, y]);
+    let name = || format!("{criterion} {mode} at x, y = {}", Dimension::LENGTH.list(&[x, y]));
     let symmetry = model.plate.symmetry();
     let judged = |other: usize| model.watched.binary_search(&symmetry.quad(other)).is_ok();
     let corners = &mesh.quads[quad];
     let beside = (0..mesh.quads.len()).filter(|other| mesh.quads[*other].iter().any(|node| corners.contains(node)));
-    if beside.into_iter().any(|other| !judged(other)) {
+    if hangs_on_cell && beside.into_iter().any(|other| !judged(other)) {
         return Some(format!("{} is at the border of what is judged: enlarge `failure.radius`", name()));
     }
     match model.window {
         Window::Square(side) if mesh.quality(quad).area > side * side => Some(format!(
-            "{} is in a cell of {}, larger than the window of {}: its time follows the mesh; refine there",
+            "{} is in a cell of {}, larger than the window of {}: its {what} follows the mesh; refine there",
             name(),
             Dimension::LENGTH.of(mesh.quality(quad).area.sqrt()),
             Dimension::LENGTH.of(side)

@@ -6,7 +6,7 @@ mod onset;
 mod text;
 mod warnings;
 
-pub(crate) use cautions::follows_mesh;
+pub(crate) use cautions::{follows_mesh, placed};
 pub use onset::OnsetBand;
 
 use crate::advise::hindsight;
