@@ -78,7 +78,7 @@ fn of_an_impact_it_is_reached() {
 #[test]
 fn what_is_not_reached_has_its_reason_and_the_best_is_run() {
     let case = struck();
-    let done = case.fem("run", &["--accuracy", "0.001%", "--budget", "2s", "--out", "out"]);
+    let done = case.fem("run", &["--accuracy", "0.001%", "--budget", "2e0 s", "--out", "out"]);
     let asked = asked(&case, "out");
     assert!(done.status == 1 && done.stdout.contains("not reached: "), "{done:#?}");
     assert!(asked["stopped"].is_string() && asked["reached"].as_f64().unwrap() > 1e-5, "{asked:#}");

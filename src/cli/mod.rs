@@ -71,9 +71,9 @@ fn samples(text: &str) -> Result<usize, String> {
 
 /// A time above zero with its unit, s.
 fn time(text: &str) -> Result<f64, String> {
-    let spaced = text.find(|c: char| c.is_alphabetic()).map_or(text.to_owned(), |at| {
-        let (number, unit) = text.split_at(at);
-        format!("{} {unit}", number.trim())
+    let spaced = text.rfind(|c: char| c.is_ascii_digit() || c == '.').map_or(text.to_owned(), |last| {
+        let (number, unit) = text.split_at(last + 1);
+        format!("{number} {}", unit.trim())
     });
     match fem_io::units::parse_as(&spaced, fem_core::plugin::Dimension::TIME) {
         Ok(seconds) if seconds > 0.0 => Ok(seconds),

@@ -3,13 +3,16 @@
 use super::builder::Builder;
 use fem_core::load;
 use fem_core::plate::Plate;
-use fem_io::scene::{Load, LoadKind, Located, Pressure, SceneError};
+use fem_io::scene::{Load, LoadKind, Located, Pressure, SceneError, Window};
 
 /// Share of a pressure that the cells may lose.
 const LOST: f64 = 0.01;
 
+/// Cells or windows up to as large as whose area a load is narrow.
+const NARROW: f64 = 8.0;
+
 impl Builder<'_> {
-    /// Places around which loads that act on a part of the plate press on it: where a formula has its peak, in the middle of a group.
+    /// Where loads press that are no wider than some cells: a formula at its peak, a group in its middle.
     pub(super) fn loaded(&self, plate: &Plate, loads: &[Load]) -> Result<Vec<[f64; 2]>, SceneError> {
         let mut places = Vec::new();
         for Load { kind, .. } in loads {
@@ -19,20 +22,34 @@ impl Builder<'_> {
                     places.extend(self.columns(plate, &node.group)?.into_iter().map(|c| plate.columns[c as usize]));
                 }
                 LoadKind::Pressure { pressure: pressure @ Pressure::Formula { .. }, group, .. } => {
-                    places.extend(
-                        load::peak(plate, &self.pressed(plate, group)?, |at| pressure.at(at)).map(|peak| peak.0),
-                    );
+                    places.extend(self.narrow_peak(plate, &self.pressed(plate, group)?, |at| pressure.at(at)));
                 }
-                LoadKind::Pressure { pressure: Pressure::Uniform(_), group: group @ Some(_), .. } => {
-                    places.extend(middle(plate, &self.pressed(plate, group)?));
+                LoadKind::Pressure { pressure: Pressure::Uniform(_), group, .. } => {
+                    let (at, area) = middle(plate, &self.pressed(plate, group)?);
+                    places.extend(self.is_narrow(plate, at, area).then_some(at));
                 }
-                LoadKind::Pressure { .. }
-                | LoadKind::Edge { .. }
-                | LoadKind::Displacement { .. }
-                | LoadKind::Gravity { .. } => {}
+                LoadKind::Edge { .. } | LoadKind::Displacement { .. } | LoadKind::Gravity { .. } => {}
             }
         }
         Ok(places)
+    }
+
+    /// Where |p| is largest, if ∫ |p| dA is narrow there. Of cells that a symmetry maps onto each other one stands for all.
+    fn narrow_peak(&self, plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Option<[f64; 2]> {
+        let kept: Vec<usize> = quads.iter().copied().filter(|quad| plate.symmetry().quad(*quad) == *quad).collect();
+        let (at, peak) = load::peak(plate, &kept, &p)?;
+        self.is_narrow(plate, at, load::size(plate, quads, &p) / peak).then_some(at)
+    }
+
+    /// Whether a load over this area is no wider than some cells or windows at a place.
+    fn is_narrow(&self, plate: &Plate, at: [f64; 2], area: f64) -> bool {
+        let plane = &plate.plane;
+        let window = match self.scene.failure.window {
+            Window::Square(side) => side * side,
+            Window::Element => 0.0,
+        };
+        let cell = (0..plane.quads.len()).find(|quad| plane.corners(*quad).locate(at).is_some());
+        cell.is_some_and(|quad| area <= NARROW * plane.quality(quad).area.max(window))
     }
 
     /// What is lost of pressures that change faster than the cells are integrated.
@@ -69,13 +86,13 @@ impl Builder<'_> {
     }
 }
 
-/// Centroid of some cells.
-fn middle(plate: &Plate, quads: &[usize]) -> Option<[f64; 2]> {
+/// Centroid and area of some cells.
+fn middle(plate: &Plate, quads: &[usize]) -> ([f64; 2], f64) {
     let mut sum = [0.0; 3];
     for quad in quads {
         let ([x, y], area) = (plate.plane.corners(*quad).centroid(), plate.plane.quality(*quad).area);
         [x * area, y * area, area].iter().zip(&mut sum).for_each(|(part, sum)| *sum += part);
     }
     let [x, y, area] = sum;
-    (area > 0.0).then(|| [x / area, y / area])
+    ([x / area, y / area], area)
 }

@@ -12,8 +12,7 @@ use fem_core::interfaces::{InterfaceMaterial, Interfaces, InterfacesError};
 use fem_core::laminate::Laminate;
 use fem_core::material::{Elastic, Material};
 use fem_core::plate::Plate;
-use fem_core::plugin::Dimension;
-use fem_core::plugin::{Built, Kind};
+use fem_core::plugin::{Built, Dimension, Kind, digits};
 use fem_core::ply_law::{LawError, LawPoint};
 use fem_core::springs::SupportSpring;
 use fem_io::scene::{Analysis, DelaminationSpec, Place, PluginSpec, SceneError, StartingExtent};
@@ -96,10 +95,10 @@ impl Separation {
         (times > HEAVY_SPRINGS).then(|| {
             format!(
                 "in steps of {} the places where the plate lifts off carry {times:.2} times its mass for the stiffness of what it lies on, \
-                 which holds them down: take steps of {}, or {:.1e} times that stiffness",
+                 which holds them down: take steps of {}, or {} times that stiffness",
                 Dimension::TIME.of(step),
                 Dimension::TIME.of(step * (0.5 * HEAVY_SPRINGS / times).sqrt()),
-                0.5 * HEAVY_SPRINGS / times
+                digits(0.5 * HEAVY_SPRINGS / times)
             )
         })
     }

@@ -207,13 +207,17 @@ fn mean_forces_of_a_step_do_the_work_that_the_energies_say() {
     }
 }
 
-/// A plate of cells 10 mm wide and its toughnesses.
+/// A plate of cells 10 mm wide and its toughnesses, pulled by 1 N/mm.
 fn wide(more: &str) -> Result<Model, Error> {
+    pulled(more, 1.0)
+}
+
+fn pulled(more: &str, by: f64) -> Result<Model, Error> {
     model(&format!(
         "title = 'wide'\nanalysis = 'static'\nmesh = {{ rectangle = ['20 mm', '10 mm'], cells = [2, 1] }}\n\
          element = {{ kind = 'hermite-prism' }}\neffects = {{ damage = 'off' }}\nsupport = {FREE}\n\
-         load = [{{ force_per_length = ['1 N/mm', '0 N/mm', '0 N/mm'], group = 'x-max' }}, \
-         {{ force_per_length = ['-1 N/mm', '0 N/mm', '0 N/mm'], group = 'x-min' }}]\n\
+         load = [{{ force_per_length = ['{by} N/mm', '0 N/mm', '0 N/mm'], group = 'x-max' }}, \
+         {{ force_per_length = ['-{by} N/mm', '0 N/mm', '0 N/mm'], group = 'x-min' }}]\n\
          laminate = {{ plies = '[0]', material = 'tape', ply_thickness = '1 mm', layers = [1] }}\n\
          [materials.tape]\nlibrary = 'AS4/3502'\nlaw = {{ name = 'crack-band'{more} }}\n\
          Gft = '80 N/mm'\nGfc = '100 N/mm'\nGmt = '0.28 N/mm'\nGmc = '1.3 N/mm'\nGms = '0.8 N/mm'\n"
@@ -239,6 +243,20 @@ fn cells_too_wide_for_a_toughness_are_refused_or_lower_strengths_and_say_so() {
     );
     let missing = model(&struck("law = 'crack-band'\nGft = '80 N/mm'\n", "")).unwrap_err().to_string();
     assert!(missing.contains("needs the toughness Gfc, Gmt, Gmc"), "{missing}");
+}
+
+/// A plate of fibres along the pull: Xt is 1793 MPa.
+#[test]
+fn what_plies_do_not_bear_at_rest_is_no_buckling() {
+    let solve = |by: f64| {
+        let model = pulled(", lower_strengths = true", by).unwrap();
+        statics::solve(&model, NonZeroUsize::MIN)
+    };
+    assert!(solve(500.0).is_ok());
+    let refused = solve(3000.0).unwrap_err();
+    assert!(matches!(refused, Error::Softened(_)), "{refused:?}");
+    let said = format!("{refused} {}", std::error::Error::source(&refused).unwrap());
+    assert!(said.contains("in which the plies bear this load") && !said.contains("buckles"), "{said}");
 }
 
 #[test]

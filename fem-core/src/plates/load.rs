@@ -110,25 +110,37 @@ pub fn peak(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Opti
     sized.reduce(|largest, next| if next.1 > largest.1 { next } else { largest })
 }
 
+/// ∫ |p| dA over `quads`, N, by twice as many points as [`pressure`] takes.
+pub fn size(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> f64 {
+    quads.iter().map(|quad| over_cell(plate, *quad, 2 * ORDER, |at| p(at).abs())).sum()
+}
+
+/// ∫ p dA over a quad by points of an order.
+fn over_cell(plate: &Plate, quad: usize, order: usize, mut p: impl FnMut([f64; 2]) -> f64) -> f64 {
+    let cell = plate.cell(plate.cell_over(quad, 0));
+    let each = cell.corners.domain().points(order).iter().map(|Point { at: [r, s], factors }| {
+        let [x, y, _] = cell.position([*r, *s, 0.0]);
+        p([x, y]) * cell.plane(*r, *s).det * factors[0] * factors[1]
+    });
+    each.sum()
+}
+
 /// What the integration of [`pressure`] makes of a pressure that changes within cells: Σ |∫ p dA − the same by twice as many points|
 /// over the cells, as a share of ∫ |p| dA by these; all of it where they miss its [`peak`].
 pub fn unresolved(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> f64 {
-    let (mut missed, mut whole, mut largest) = (0.0, 0.0, 0.0);
+    let (mut missed, mut largest) = (0.0, 0.0);
     for quad in quads {
-        let cell = plate.cell(plate.cell_over(*quad, 0));
-        let [(coarse, _), (fine, size)] = [ORDER, 2 * ORDER].map(|order| {
-            let each = cell.corners.domain().points(order).iter().map(|Point { at: [r, s], factors }| {
-                let [x, y, _] = cell.position([*r, *s, 0.0]);
-                let value = p([x, y]);
+        let [coarse, fine] = [ORDER, 2 * ORDER].map(|order| {
+            over_cell(plate, *quad, order, |at| {
+                let value = p(at);
                 largest = f64::max(largest, value.abs());
-                value * cell.plane(*r, *s).det * factors[0] * factors[1]
-            });
-            each.fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()))
+                value
+            })
         });
         missed += f64::abs(coarse - fine);
-        whole += size;
     }
-    match peak(plate, quads, p) {
+    let whole = size(plate, quads, &p);
+    match peak(plate, quads, &p) {
         Some((_, peak)) if peak > LOST * largest => 1.0,
         _ if whole > 0.0 => missed / whole,
         _ => 0.0,
