@@ -208,7 +208,7 @@ pub(crate) fn follows_mesh(model: &Model, event: &FailureEvent) -> bool {
 /// An onset whose place is chosen by the mesh or by where the criteria look.
 fn onset(model: &Model, event: &FailureEvent) -> Option<String> {
     let [x, y, _] = event.position;
-    placed(model, (&event.criterion, &event.mode, "time"), event.cell as usize, [x, y])
+    placed(model, (&event.criterion, event.mode, "time"), event.cell as usize, [x, y])
 }
 
 /// A mode of a criterion whose `what` follows the mesh or where the criteria look, by the place of a cell at which it is found.
