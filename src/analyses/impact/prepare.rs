@@ -305,16 +305,9 @@ fn prepare_separable<'a>(
     };
     let system = ImpactSystem::new(structure, impactors).with_tips(tips);
     let mut system = couple(model, system, None, &mut effects);
-    let (buckling, substructures, squeezes_at_rest) = (None, None, compliances);
-    let before = Before {
-        stiffness_entries,
-        factor_entries,
-        buckling,
-        substructures,
-        memory,
-        softness,
-        squeezes: squeezes_at_rest,
-    };
+    let (buckling, substructures, squeezed) = (None, None, compliances);
+    let before =
+        Before { stiffness_entries, factor_entries, buckling, substructures, memory, softness, squeezes: squeezed };
     let sizes = check_step(model, impact, &mut system, None, before)?;
     let sizes = Sizes { static_stiffness: stiffness.unwrap_or(sizes.static_stiffness), ..sizes };
     Ok(Prepared {
