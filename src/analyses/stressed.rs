@@ -50,7 +50,7 @@ pub(super) fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> R
         return Ok(None);
     }
     let factors = assembled::factors(structure, &geometric, assembled::FACTORS).map(|found| found.factors);
-    let factors = factors.unwrap_or_default();
+    let factors: Vec<f64> = factors.unwrap_or_default().into_iter().filter(|factor| factor.is_finite()).collect();
     let takes = match largest_deflection(model, &all) {
         None => None,
         Some(at) => {
@@ -84,7 +84,7 @@ fn share([m1, m2, m3]: [f64; 3], most: f64) -> f64 {
     if square.abs() <= 1e-12 * m1 * m1 {
         return m1;
     }
-    let second = ((m3 - 2.0 * m1 * m2 + m1.powi(3)) / square).max(-most).min(most);
+    let second = ((m3 - 2.0 * m1 * m2 + m1.powi(3)) / square).clamp(-most, most);
     // Beyond the load that buckles it the plate has no such state.
     m1 + square / if second < 1.0 { 1.0 - second } else { 1.0 }
 }
