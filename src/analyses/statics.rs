@@ -341,15 +341,20 @@ fn nonlinear(
     let mut large = LargePlate::new(plate, element.clone(), constraints).ok_or(Error::SmallOnly)?;
     geometric.iter().for_each(|geometric| large.carry(geometric));
     // A plate that is hot and has not moved is pressed in its plane more than it bears.
-    let start = match model.effects.nature().strained {
-        true => linear(model, f, threads, counters, stopwatch)?.independent,
-        false => vec![0.0; f.len()],
+    let (start, softness) = match model.effects.nature().strained {
+        true => {
+            let found = linear(model, f, threads, counters, stopwatch)?;
+            (found.independent, found.softness)
+        }
+        // What is said of the supports is no reason to fail.
+        false if !model.between.is_empty() => {
+            let assembled = assembled::structure(model, false, threads, counters).ok();
+            let softness = assembled.and_then(|mut linear| supports::soft_under(model, &mut linear.structure, f));
+            (vec![0.0; f.len()], softness)
+        }
+        false => (vec![0.0; f.len()], None),
     };
     let found = equilibrium(&mut large, symbolic, f, start, threads)?;
-    let softness = match model.between[..] {
-        [] => None,
-        _ => supports::soft_under(model, &mut assembled::structure(model, false, threads, counters)?.structure, f),
-    };
     Ok(Found { factor_entries, softness, ..Found::of(found, large.integrated(), counters) })
 }
 

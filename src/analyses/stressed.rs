@@ -16,9 +16,10 @@ const FLAT: f64 = 1e-6;
 /// What stresses in the plane do, and a linear plate leaves out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stressed {
-    /// Share of its stiffness against this deflection that they take, negative where they add to it; `None` where it does not deflect.
+    /// Share of its stiffness against this deflection that they take, negative where they add to it; `None` where it does not deflect,
+    /// and where they buckle it.
     pub takes: Option<f64>,
-    /// Part of them that buckles the plate, where that is less than all.
+    /// Part of them that buckles the plate, where that is not more than all.
     pub buckles: Option<f64>,
 }
 
@@ -26,8 +27,8 @@ pub struct Stressed {
 ///
 /// With the geometric stiffness G of the stresses there and the deflections w alone, those with G are (1 + K⁻¹ G)⁻¹ w. Where w is
 /// largest their series has the terms w, −K⁻¹ G w, .., relative to w the moments 1, m₁, m₂, m₃, of which the continued fraction is
-/// 1 − w/w′ = α₁ + β²/(1 − α₂), α₁ = m₁, β² = m₂ − m₁², β² α₂ = m₃ − 2 m₁ m₂ + m₁³. α₂ is no larger than the share of the load that
-/// buckles the plate.
+/// 1 − w/w′ = α₁ + β²/(1 − α₂), α₁ = m₁, β² = m₂ − m₁², β² α₂ = m₃ − 2 m₁ m₂ + m₁³. α₂ is held between the shares of the loads that
+/// buckle the plate to either side, beyond which there is no w′.
 ///
 /// # Errors
 /// A stiffness that cannot be factorised.
@@ -51,7 +52,9 @@ pub(super) fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> R
     }
     let factors = assembled::factors(structure, &geometric, assembled::FACTORS).map(|found| found.factors);
     let factors: Vec<f64> = factors.unwrap_or_default().into_iter().filter(|factor| factor.is_finite()).collect();
-    let takes = match largest_deflection(model, &all) {
+    let buckles = factors.iter().copied().filter(|factor| *factor > 0.0).min_by(f64::total_cmp);
+    let buckles = buckles.filter(|factor| *factor <= 1.0);
+    let takes = match largest_deflection(model, &all).filter(|_| buckles.is_none()) {
         None => None,
         Some(at) => {
             let deflects = |i: usize| plate.locate(constraints.original(i)).2.n() == 3;
@@ -67,26 +70,24 @@ pub(super) fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> R
                 term = next;
                 *moment = there(&term) / w;
             }
-            let most = factors.iter().map(|factor| 1.0 / factor.abs()).reduce(f64::max);
-            Some(share(moments, most.unwrap_or(f64::INFINITY)))
+            let shares = factors.iter().map(|factor| 1.0 / factor);
+            let bounds = shares.fold([0.0, 0.0], |[low, high], share| [f64::min(low, share), f64::max(high, share)]);
+            Some(share(moments, bounds))
         }
     };
     let takes = takes.filter(|share| share.abs() > WORTH);
-    let buckles = factors.into_iter().filter(|factor| *factor > 0.0).min_by(f64::total_cmp);
-    let buckles = buckles.filter(|factor| *factor < 1.0);
     Ok((takes.is_some() || buckles.is_some()).then_some(Stressed { takes, buckles }))
 }
 
-/// The continued fraction of the moments, with α₂ no larger than `most`.
-fn share([m1, m2, m3]: [f64; 3], most: f64) -> f64 {
+/// The continued fraction of the moments, with α₂ between two shares, of which the larger is below one.
+fn share([m1, m2, m3]: [f64; 3], [low, high]: [f64; 2]) -> f64 {
     let square = m2 - m1 * m1;
     // Nothing is left beside the first term.
     if square.abs() <= 1e-12 * m1 * m1 {
         return m1;
     }
-    let second = ((m3 - 2.0 * m1 * m2 + m1.powi(3)) / square).clamp(-most, most);
-    // Beyond the load that buckles it the plate has no such state.
-    m1 + square / if second < 1.0 { 1.0 - second } else { 1.0 }
+    let second = ((m3 - 2.0 * m1 * m2 + m1.powi(3)) / square).clamp(low, high);
+    m1 + square / (1.0 - second)
 }
 
 /// The unknown of the largest deflection: `None` where none is worth its name beside other displacements. Over the height a solid
@@ -118,7 +119,7 @@ mod tests {
         {
             let moment = |k: i32| weight * f64::powi(of_one, k) + other * f64::powi(of_other, k);
             let want = 1.0 - 1.0 / (weight / (1.0 - of_one) + other / (1.0 - of_other));
-            let got = share([1, 2, 3].map(moment), 1.0);
+            let got = share([1, 2, 3].map(moment), [-1.0, 0.9]);
             assert!((got - want).abs() < 1e-12, "{got} {want}");
         }
     }

@@ -169,8 +169,8 @@ pub enum Error {
     Equilibrium(#[from] EquilibriumError),
     #[error("no equilibrium was found in which the plies bear this load")]
     #[diagnostic(help(
-        "lower it: at rest the plies are given all of the load at once, and what breaks under it is not followed; an impact follows \
-         it, and so do loads at rest beside `effects.delamination = \"growth\"`, step by step"
+        "lower it: at rest the plies are given all of the load at once, and what yields or breaks under it is not followed; an impact \
+         follows it, and so do loads at rest beside `effects.delamination = \"growth\"`, step by step"
     ))]
     Softened(#[source] EquilibriumError),
     #[error("a {0} is not finite: the structure is singular, or a load is too large for floating-point numbers")]

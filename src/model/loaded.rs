@@ -1,9 +1,10 @@
 //! Where loads at rest act, and how well the cells see them.
 
 use super::builder::Builder;
-use fem_core::load;
+use fem_core::load::{self, Unresolved};
 use fem_core::plate::Plate;
 use fem_io::scene::{Load, LoadKind, Located, Pressure, SceneError, Window};
+use std::f64::consts::PI;
 
 /// Share of a pressure that the cells may lose.
 const LOST: f64 = 0.01;
@@ -12,12 +13,19 @@ const LOST: f64 = 0.01;
 const NARROW: f64 = 8.0;
 
 impl Builder<'_> {
-    /// Where loads press that are no wider than some cells: a formula at its peak, a group in its middle.
+    /// Where loads press that are no wider than some cells or windows: a formula at its peak, a group in its middle. Nobody looks there
+    /// where windows follow the cells.
     pub(super) fn loaded(&self, plate: &Plate, loads: &[Load]) -> Result<Vec<[f64; 2]>, SceneError> {
         let mut places = Vec::new();
+        if self.scene.failure.criteria.is_empty() || self.scene.failure.window == Window::Element {
+            return Ok(places);
+        }
         for Load { kind, .. } in loads {
             match kind {
-                LoadKind::Patch { at, .. } => places.push(self.point(plate, at)?.0),
+                LoadKind::Patch { at, radius, .. } => {
+                    let (at, _) = self.point(plate, at)?;
+                    places.extend(self.is_narrow(plate, at, PI * radius * radius).then_some(at));
+                }
                 LoadKind::Point { node, .. } => {
                     places.extend(self.columns(plate, &node.group)?.into_iter().map(|c| plate.columns[c as usize]));
                 }
@@ -25,8 +33,11 @@ impl Builder<'_> {
                     places.extend(self.narrow_peak(plate, &self.pressed(plate, group)?, |at| pressure.at(at)));
                 }
                 LoadKind::Pressure { pressure: Pressure::Uniform(_), group, .. } => {
-                    let (at, area) = middle(plate, &self.pressed(plate, group)?);
-                    places.extend(self.is_narrow(plate, at, area).then_some(at));
+                    let quads = self.pressed(plate, group)?;
+                    let (at, area) = middle(plate, &quads);
+                    // Of a ring the middle lies in the hole.
+                    let inside = quads.iter().any(|quad| plate.plane.corners(*quad).locate(at).is_some());
+                    places.extend((inside && self.is_narrow(plate, at, area)).then_some(at));
                 }
                 LoadKind::Edge { .. } | LoadKind::Displacement { .. } | LoadKind::Gravity { .. } => {}
             }
@@ -38,7 +49,7 @@ impl Builder<'_> {
     fn narrow_peak(&self, plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Option<[f64; 2]> {
         let kept: Vec<usize> = quads.iter().copied().filter(|quad| plate.symmetry().quad(*quad) == *quad).collect();
         let (at, peak) = load::peak(plate, &kept, &p)?;
-        self.is_narrow(plate, at, load::size(plate, quads, &p) / peak).then_some(at)
+        self.is_narrow(plate, at, load::size(plate, &kept, &p) / peak).then_some(at)
     }
 
     /// Whether a load over this area is no wider than some cells or windows at a place.
@@ -59,14 +70,17 @@ impl Builder<'_> {
             let LoadKind::Pressure { pressure: pressure @ Pressure::Formula { .. }, group, .. } = kind else {
                 continue;
             };
-            let missed = load::unresolved(plate, &self.pressed(plate, group)?, |at| pressure.at(at));
-            if !(missed <= LOST) {
-                warnings.push(format!(
-                    "the pressure of `load[{number}]` changes faster than the cells are integrated: with twice as many points its force differs \
-                     by {:.1} %; make the cells smaller where it changes",
-                    1e2 * missed
-                ));
-            }
+            let how = match load::unresolved(plate, &self.pressed(plate, group)?, |at| pressure.at(at)) {
+                Unresolved::Share(missed) if missed <= LOST => continue,
+                Unresolved::Share(missed) => {
+                    format!("with twice as many points its force differs by {:.1} %", 1e2 * missed)
+                }
+                Unresolved::Peak => "no point of the integration sees its peak".to_owned(),
+            };
+            warnings.push(format!(
+                "the pressure of `load[{number}]` changes faster than the cells are integrated: {how}; make the cells smaller where it \
+                 changes"
+            ));
         }
         Ok(warnings)
     }

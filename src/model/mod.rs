@@ -128,7 +128,7 @@ pub struct Model {
     pub interface: Option<usize>,
     /// Quads whose stresses the criteria judge; of those that a symmetry maps onto each other one.
     pub watched: Vec<usize>,
-    /// Centres of windows around the impacts, where stresses are computed as well.
+    /// Centres of windows around impacts and narrow loads, where stresses are computed as well.
     pub centres: Vec<Centre>,
     /// The cells that each of these, or an image of it, lies in.
     pub centre_cells: Vec<Vec<usize>>,

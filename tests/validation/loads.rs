@@ -188,6 +188,8 @@ fn a_pressure_that_changes_faster_than_cells_is_warned_of() {
         // Of which no point of the integration sees anything.
         ("exp(-((x-10)^2+(y-5)^2)/1e-4)", true),
         ("exp(-((x-11.3)/2)^2)", false),
+        // Not finite at a corner, and integrated well.
+        ("-log(x/100)", false),
         ("sin(3.14159*x/5)", false),
         ("0*x", false),
     ] {
@@ -214,9 +216,9 @@ fn margins_under_a_narrow_load() {
         let solution = fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap();
         let summary = fem::output::statics::StaticSummary::new(&model, &solution);
         let warned =
-            summary.warnings.iter().any(|said| said.contains("larger than the window of 2.54 mm: its margin follows"));
+            summary.warnings.iter().any(|said| said.contains("longer than the window of 2.54 mm: its margin follows"));
         let margin = &summary.margins[0];
-        assert_eq!(warned, cells < 18, "{cells}: {margin:?}");
+        assert_eq!(warned, cells < 16, "{cells}: {margin:?}");
         margin.reserve_factor
     };
     for load in [

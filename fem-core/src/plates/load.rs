@@ -125,10 +125,18 @@ fn over_cell(plate: &Plate, quad: usize, order: usize, mut p: impl FnMut([f64; 2
     each.sum()
 }
 
-/// What the integration of [`pressure`] makes of a pressure that changes within cells: Σ |∫ p dA − the same by twice as many points|
-/// over the cells, as a share of ∫ |p| dA by these; all of it where they miss its [`peak`].
-pub fn unresolved(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> f64 {
-    let (mut missed, mut largest) = (0.0, 0.0);
+/// What the integration of [`pressure`] loses of one that changes within cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unresolved {
+    /// Σ |∫ p dA − the same by twice as many points| over the cells, as a share of ∫ |p| dA by these.
+    Share(f64),
+    /// Its [`peak`], which lies between the points: some times as large as at any of them.
+    Peak,
+}
+
+/// What [`pressure`] loses of `p` over `quads`. A peak that is not finite belongs to no point, and may well be integrated.
+pub fn unresolved(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Unresolved {
+    let (mut missed, mut whole, mut largest) = (0.0, 0.0, 0.0);
     for quad in quads {
         let [coarse, fine] = [ORDER, 2 * ORDER].map(|order| {
             over_cell(plate, *quad, order, |at| {
@@ -138,12 +146,12 @@ pub fn unresolved(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -
             })
         });
         missed += f64::abs(coarse - fine);
+        whole += over_cell(plate, *quad, 2 * ORDER, |at| p(at).abs());
     }
-    let whole = size(plate, quads, &p);
     match peak(plate, quads, &p) {
-        Some((_, peak)) if peak > LOST * largest => 1.0,
-        _ if whole > 0.0 => missed / whole,
-        _ => 0.0,
+        Some((_, peak)) if peak.is_finite() && peak > LOST * largest => Unresolved::Peak,
+        _ if whole > 0.0 => Unresolved::Share(missed / whole),
+        _ => Unresolved::Share(0.0),
     }
 }
 

@@ -211,6 +211,17 @@ fn onset(model: &Model, event: &FailureEvent) -> Option<String> {
     placed(model, (&event.criterion, event.mode, "time"), event.cell as usize, [x, y])
 }
 
+/// How much longer than a window cells may be that it cuts around an impact or a load: of a margin they make some 5 %.
+const AROUND: f64 = 1.25;
+
+/// The longest side of a cell, m; of a section, along which nothing changes across, that along the strip.
+fn length(model: &Model, quad: usize) -> f64 {
+    let section = model.plate.info().is_section();
+    let sides = model.plate.plane.corners(quad).sides();
+    let long = |[a, b]: [[f64; 2]; 2]| (a[0] - b[0]).hypot(if section { 0.0 } else { a[1] - b[1] });
+    sides.map(long).fold(0.0, f64::max)
+}
+
 /// A mode of a criterion whose `what` follows the mesh or where the criteria look, by the place of a cell at which it is found.
 pub(crate) fn placed(
     model: &Model,
@@ -228,11 +239,13 @@ pub(crate) fn placed(
     if hangs_on_cell && beside.into_iter().any(|other| !judged(other)) {
         return Some(format!("{} is at the border of what is judged: enlarge `failure.radius`", name()));
     }
+    let length = length(model, quad);
+    let resolved = if hangs_on_cell { 1.0 } else { AROUND };
     match model.window {
-        Window::Square(side) if mesh.quality(quad).area > side * side => Some(format!(
-            "{} is in a cell of {}, larger than the window of {}: its {what} follows the mesh; refine there",
+        Window::Square(side) if length > resolved * side => Some(format!(
+            "{} is in a cell {} long, longer than the window of {}: its {what} follows the mesh; refine there",
             name(),
-            Dimension::LENGTH.of(mesh.quality(quad).area.sqrt()),
+            Dimension::LENGTH.of(length),
             Dimension::LENGTH.of(side)
         )),
         _ => None,
