@@ -49,7 +49,7 @@ impl Builder<'_> {
     fn narrow_peak(&self, plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Option<[f64; 2]> {
         let kept: Vec<usize> = quads.iter().copied().filter(|quad| plate.symmetry().quad(*quad) == *quad).collect();
         let (at, peak) = load::peak(plate, &kept, &p)?;
-        self.is_narrow(plate, at, load::size(plate, &kept, &p) / peak).then_some(at)
+        self.is_narrow(plate, at, load::size(plate, quads, &p) / peak).then_some(at)
     }
 
     /// Whether a load over this area is no wider than some cells or windows at a place.
