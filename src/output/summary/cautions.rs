@@ -240,7 +240,8 @@ pub(crate) fn placed(
         return Some(format!("{} is at the border of what is judged: enlarge `failure.radius`", name()));
     }
     let length = length(model, quad);
-    let resolved = if hangs_on_cell { 1.0 } else { AROUND };
+    // Cells as wide as the window are no longer than it, but for rounding.
+    let resolved = if hangs_on_cell { 1.0 + 1e-9 } else { AROUND };
     match model.window {
         Window::Square(side) if length > resolved * side => Some(format!(
             "{} is in a cell {} long, longer than the window of {}: its {what} follows the mesh; refine there",
