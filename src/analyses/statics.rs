@@ -341,20 +341,22 @@ fn nonlinear(
     let mut large = LargePlate::new(plate, element.clone(), constraints).ok_or(Error::SmallOnly)?;
     geometric.iter().for_each(|geometric| large.carry(geometric));
     // A plate that is hot and has not moved is pressed in its plane more than it bears.
-    let (start, softness) = match model.effects.nature().strained {
-        true => {
-            let found = linear(model, f, threads, counters, stopwatch)?;
-            (found.independent, found.softness)
-        }
-        // What is said of the supports is no reason to fail.
-        false if !model.between.is_empty() => {
-            let assembled = assembled::structure(model, false, threads, counters).ok();
-            let softness = assembled.and_then(|mut linear| supports::soft_under(model, &mut linear.structure, f));
-            (vec![0.0; f.len()], softness)
-        }
-        false => (vec![0.0; f.len()], None),
+    let hot = match model.effects.nature().strained {
+        true => Some(linear(model, f, threads, counters, stopwatch)?),
+        false => None,
     };
+    let told = hot.as_ref().map(|hot| hot.softness);
+    let start = hot.map_or_else(|| vec![0.0; f.len()], |hot| hot.independent);
     let found = equilibrium(&mut large, symbolic, f, start, threads)?;
+    let softness = match told {
+        Some(softness) => softness,
+        None if model.between.is_empty() => None,
+        None => {
+            // What is said of the supports is no reason to fail.
+            let assembled = assembled::structure(model, false, threads, counters).ok();
+            assembled.and_then(|mut linear| supports::soft_under(model, &mut linear.structure, f))
+        }
+    };
     Ok(Found { factor_entries, softness, ..Found::of(found, large.integrated(), counters) })
 }
 
@@ -403,7 +405,6 @@ fn lawful(
     }
     let mut assembled = assembled::structure(model, false, threads, counters)?;
     stopwatch.lap("assemble");
-    let softness = supports::soft_under(model, &mut assembled.structure, &f);
     let (k, _) = assembled.structure.matrices();
     let (symbolic, _) = model.analyse(k.pattern().clone())?;
     let virgin = vec![0.0; laws.states()];
@@ -417,6 +418,8 @@ fn lawful(
         other => other.into(),
     })?;
     let factor_entries = assembled.factor_entries;
+    // When the factors of the tangents are gone.
+    let softness = supports::soft_under(model, &mut assembled.structure, &f);
     Ok(Found { factor_entries, softness, ..Found::of(found, laws.integrated(), counters) })
 }
 

@@ -112,17 +112,17 @@ pub fn peak(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Opti
 
 /// ∫ |p| dA over `quads`, N, by twice as many points as [`pressure`] takes.
 pub fn size(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> f64 {
-    quads.iter().map(|quad| over_cell(plate, *quad, 2 * ORDER, |at| p(at).abs())).sum()
+    quads.iter().map(|quad| over_cell(plate, *quad, 2 * ORDER, &p)[1]).sum()
 }
 
-/// ∫ p dA over a quad by points of an order.
-fn over_cell(plate: &Plate, quad: usize, order: usize, mut p: impl FnMut([f64; 2]) -> f64) -> f64 {
+/// ∫ p dA and ∫ |p| dA over a quad by points of an order.
+fn over_cell(plate: &Plate, quad: usize, order: usize, mut p: impl FnMut([f64; 2]) -> f64) -> [f64; 2] {
     let cell = plate.cell(plate.cell_over(quad, 0));
     let each = cell.corners.domain().points(order).iter().map(|Point { at: [r, s], factors }| {
         let [x, y, _] = cell.position([*r, *s, 0.0]);
         p([x, y]) * cell.plane(*r, *s).det * factors[0] * factors[1]
     });
-    each.sum()
+    each.fold([0.0, 0.0], |[sum, size], value| [sum + value, size + value.abs()])
 }
 
 /// What the integration of [`pressure`] loses of one that changes within cells.
@@ -138,7 +138,7 @@ pub enum Unresolved {
 pub fn unresolved(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -> Unresolved {
     let (mut missed, mut whole, mut largest) = (0.0, 0.0, 0.0);
     for quad in quads {
-        let [coarse, fine] = [ORDER, 2 * ORDER].map(|order| {
+        let [[coarse, _], [fine, size]] = [ORDER, 2 * ORDER].map(|order| {
             over_cell(plate, *quad, order, |at| {
                 let value = p(at);
                 largest = f64::max(largest, value.abs());
@@ -146,7 +146,7 @@ pub fn unresolved(plate: &Plate, quads: &[usize], p: impl Fn([f64; 2]) -> f64) -
             })
         });
         missed += f64::abs(coarse - fine);
-        whole += over_cell(plate, *quad, 2 * ORDER, |at| p(at).abs());
+        whole += size;
     }
     match peak(plate, quads, &p) {
         Some((_, peak)) if peak.is_finite() && peak > LOST * largest => Unresolved::Peak,
