@@ -206,6 +206,28 @@ fn long_steps_are_said_to_be_long() {
     }
 }
 
+/// A plate that rattles on a frame: in steps that are long beside that a scheme that keeps what is too fast for them gains energy, and
+/// the one that is taken where a scene names none does not.
+#[test]
+fn plates_that_rattle_are_marched_by_default() {
+    let folder = tempfile::tempdir().unwrap();
+    fem(folder.path(), &["new", "dw", "--template", "drop-weight"]).good();
+    let scene = std::fs::read_to_string(folder.path().join("dw/scene.toml")).unwrap();
+    let case = support::plate().text(&scene);
+    let rest = ["support.1.kind=rest", "support.1.at=bottom", "mesh.plate.size=3.6 mm", "march.end=1 ms"];
+    let quiet = ["effects.damage=off", "output.plots=false", "output.history_every=4 us"];
+    let of = |step| sampled(&case, &[&rest[..], &quiet, &[step]].concat());
+    let (fine, _) = of("march.step=0.25 us");
+    let (forces, accuracy) = of("march.step=2 us");
+    assert!(apart(&forces, &fine) < 0.04, "{}", apart(&forces, &fine));
+    within(3.0, accuracy["step_error_force_L2_relative"].as_f64().unwrap(), apart(&forces, &fine));
+
+    let set = [&rest[..], &quiet, &["march.step=2 us", "march.integrator=newmark"]].concat();
+    let set: Vec<&str> = set.iter().flat_map(|key| ["--set", *key]).collect();
+    let stopped = case.fem("run", &[&["--out", "out"][..], &set].concat());
+    assert!(stopped.status != 0 && stopped.stdout.contains("leave `march.integrator` out"), "{stopped:#?}");
+}
+
 /// Few vectors, of which those that join them by chance do nothing.
 #[test]
 fn few_vectors_are_said_to_be_few() {

@@ -232,7 +232,7 @@ impl ImpactSystem {
     }
 
     /// Force (N) by which each spring that only pushes is relieved of its pull under displacements `u`.
-    pub fn reliefs(&self, u: &[f64]) -> impl Iterator<Item = f64> {
+    pub fn reliefs(&self, u: &[f64]) -> Vec<f64> {
         self.influence.lifting.reliefs(&u[..self.structure.ndof()])
     }
 

@@ -3,7 +3,7 @@
 use crate::vector::axpy;
 use fem_core::functional::Functional;
 use fem_core::structure::SolveError;
-use fem_core::vectorised::{add_columns, vectorised};
+use fem_core::vectorised::{add_columns, add_rows, rows_times, vectorised};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::sync::Arc;
 
@@ -50,6 +50,8 @@ pub struct OneSided {
 #[derive(Debug, Default)]
 pub struct Lifting {
     springs: Arc<[OneSided]>,
+    /// Pᵀ by rows, where each p has all unknowns, as those of a reduced structure have; otherwise nothing.
+    rows: Vec<f64>,
     /// G.
     compliance: DMatrix<f64>,
     /// w of each where a step begins, of forces that are means over it.
@@ -67,7 +69,13 @@ pub struct Lifting {
 impl Lifting {
     /// `springs` under a structure.
     pub fn new(springs: Arc<[OneSided]>) -> Self {
-        Self { springs, ..Self::default() }
+        let n = springs.first().map_or(0, |spring| spring.at.0.len());
+        let full = |spring: &OneSided| spring.at.0.len() == n && (0..).zip(&spring.at.0).all(|(i, (j, _))| i == *j);
+        let rows = match springs.iter().all(full) {
+            true => springs.iter().flat_map(|spring| spring.at.0.iter().map(|(_, p)| *p)).collect(),
+            false => Vec::new(),
+        };
+        Self { springs, rows, ..Self::default() }
     }
 
     /// The springs.
@@ -103,7 +111,8 @@ impl Lifting {
             x.fill(0.0);
             spring.at.add_to(1.0, &mut x);
             solve(&mut x, 1)?;
-            self.springs.iter().enumerate().for_each(|(i, other)| self.compliance[(i, j)] = other.at.of(&x));
+            let w = self.deflections(&x);
+            self.compliance.column_mut(j).copy_from_slice(&w);
         }
         self.compliance = 0.5 * (&self.compliance + self.compliance.transpose());
         Ok(())
@@ -111,7 +120,7 @@ impl Lifting {
 
     /// Has forces be means over steps that begin with the displacements `u`, or if there are none those at their ends.
     pub fn begin(&mut self, u: Option<&[f64]>) {
-        self.before = u.map(|u| self.springs.iter().map(|spring| spring.at.of(u)).collect());
+        self.before = u.map(|u| self.deflections(u));
         self.forces = DVector::zeros(self.springs.len());
     }
 
@@ -121,9 +130,14 @@ impl Lifting {
         self.forces = DVector::from_iterator(w.len(), self.laws(&self.w).map(|(force, _)| force));
     }
 
-    /// Adds Pᵀu to `w`.
-    pub fn add_deflections(&self, u: &[f64], w: &mut [f64]) {
-        w.iter_mut().zip(&*self.springs).for_each(|(w, spring)| *w += spring.at.of(u));
+    /// Pᵀu.
+    pub fn deflections(&self, u: &[f64]) -> Vec<f64> {
+        if self.rows.is_empty() {
+            return self.springs.iter().map(|spring| spring.at.of(u)).collect();
+        }
+        let mut w = vec![0.0; self.springs.len()];
+        rows_times(&self.rows, &u[..self.rows.len() / w.len()], &mut w);
+        w
     }
 
     /// Finds F for the deflections `b`, in a step that has [begun](Self::begin); whether it was found.
@@ -172,27 +186,32 @@ impl Lifting {
 
     /// Adds P F of the last deflections to `f`.
     pub fn add_load(&self, f: &mut [f64]) {
-        self.springs.iter().zip(&self.forces).for_each(|(spring, force)| spring.at.add_to(*force, f));
+        self.add_combined(self.forces.as_slice(), f);
     }
 
     /// Adds P r(Pᵀu) to `f`.
     pub fn add_forces(&self, u: &[f64], f: &mut [f64]) {
-        for OneSided { at, stiffness } in &*self.springs {
-            let w = at.of(u);
-            if w > 0.0 {
-                at.add_to(stiffness * w, f);
-            }
+        self.add_combined(&self.reliefs(u), f);
+    }
+
+    /// Adds P x to `f`.
+    fn add_combined(&self, x: &[f64], f: &mut [f64]) {
+        match self.rows.is_empty() {
+            true => self.springs.iter().zip(x).for_each(|(spring, x)| spring.at.add_to(*x, f)),
+            false => add_rows(&self.rows, x, &mut f[..self.rows.len() / x.len()]),
         }
     }
 
     /// r(Pᵀu) of each spring, N.
-    pub fn reliefs(&self, u: &[f64]) -> impl Iterator<Item = f64> {
-        self.springs.iter().map(|spring| relief(spring.stiffness, spring.at.of(u)).0)
+    pub fn reliefs(&self, u: &[f64]) -> Vec<f64> {
+        let each = self.springs.iter().zip(self.deflections(u));
+        each.map(|(spring, w)| relief(spring.stiffness, w).0).collect()
     }
 
     /// Σ ½ k ⟨w⟩², the energy that springs would have if they pulled, J.
     pub fn energy(&self, u: &[f64]) -> f64 {
-        self.springs.iter().map(|spring| 0.5 * spring.stiffness * spring.at.of(u).max(0.0).powi(2)).sum()
+        let each = self.springs.iter().zip(self.deflections(u));
+        each.map(|(spring, w)| 0.5 * spring.stiffness * w.max(0.0).powi(2)).sum()
     }
 
     /// r and r′ of each.
@@ -330,8 +349,7 @@ pub fn at_rest(
     mut solve: impl FnMut(&mut [f64], usize) -> Result<(), SolveError>,
 ) -> Result<(), SolveError> {
     lifting.set(free.len(), &mut solve)?;
-    let mut b = vec![0.0; lifting.springs.len()];
-    lifting.add_deflections(free, &mut b);
+    let b = lifting.deflections(free);
     lifting.begin(None);
     if !lifting.relieve(&b) {
         return Err(SolveError::other(LIFTED_OFF));

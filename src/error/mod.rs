@@ -207,8 +207,8 @@ pub enum Error {
     Plot(#[from] PlotError),
 }
 
-const STEP: &str = "shorten `march.step`, or, where nothing separates and another one marches, take the integrator `energy-conserving`";
-const STEP_OR_LAW: &str = "shorten `march.step`, or, where nothing separates and another one marches, take the integrator `energy-conserving`; if that changes nothing, look at the contact law: \
+const STEP: &str = "shorten `march.step`; on supports of the kind `rest` leave `march.integrator` out, elsewhere, where nothing separates, take `energy-conserving`";
+const STEP_OR_LAW: &str = "shorten `march.step`; on supports of the kind `rest` leave `march.integrator` out, elsewhere, where nothing separates, take `energy-conserving`; if that changes nothing, look at the contact law: \
     `fem_core::testkit::check_contact_law` finds what is wrong with it";
 const MATRIX: &str = "look at the supports, at the constants of the materials, at a `stiffness` of springs and at `delamination.penalty`, which may be too large, and at the \
      element if it is one of your own";

@@ -110,12 +110,7 @@ impl Influence {
         forces.resize(count, 0.0);
         lifts.resize(lifting.springs().len(), 0.0);
         lifting.set(n, &mut solve).map_err(StepError::Factorisation)?;
-        let deflections = |x: &[f64]| {
-            let mut w = vec![0.0; lifts.len()];
-            lifting.add_deflections(x, &mut w);
-            w
-        };
-        *across = x.chunks_exact(n).map(deflections).collect();
+        *across = x.chunks_exact(n).map(|x| lifting.deflections(x)).collect();
         (self.cm, self.cc) = (cm, cc);
         Ok(())
     }
@@ -133,14 +128,15 @@ impl Influence {
         for ((i, load), free) in strikers.loads().zip(&mut self.free) {
             *free += x[n + i] - value(load, x);
         }
-        self.lifting.add_deflections(x, &mut self.lifts);
+        if !self.lifting.is_empty() {
+            self.lifts.iter_mut().zip(self.lifting.deflections(x)).for_each(|(lift, w)| *lift += w);
+        }
     }
 
     /// Work of the contact forces, and of those that relieve springs, along `d`.
     pub(super) fn work(&self, strikers: Strikers<'_>, d: &[f64]) -> f64 {
         let contacts: f64 = strikers.loads().zip(&self.forces).map(|((_, load), force)| force * value(load, d)).sum();
-        let springs = self.lifting.springs().iter().zip(self.lifting.forces());
-        contacts + springs.map(|(spring, force)| force * spring.at.of(d)).sum::<f64>()
+        contacts + along(&self.lifting.deflections(d), self.lifting.forces())
     }
 
     /// Finds the contact forces for the response `d` without contact, and adds that to each, F (X, −1/(cm m)), and that to the relief of

@@ -198,6 +198,9 @@ pub const DEFAULT_MODES: usize = 10;
 /// What delaminations that grow lay over the preset.
 const GROWTH: &str = include_str!("presets/growth.toml");
 
+/// What supports from which the plate may lift off lay over it.
+const LIFTING: &str = include_str!("presets/lifting.toml");
+
 /// Load factors of buckling unless a scene says how many.
 const DEFAULT_FACTORS: usize = 4;
 
@@ -293,11 +296,13 @@ impl Merged {
         let grows = grows(delamination);
         let name = format!("preset `{}`", fidelity.name());
         let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
-        let preset = Table::parse(fidelity.preset(), Origin::Preset, &source)?;
-        let table = match grows {
-            true => own.over(Table::parse(GROWTH, Origin::Preset, &source)?.over(preset)),
-            false => own.over(preset),
-        };
+        let supports = Reader::unchecked(&own, KEYS, &source).optional("support");
+        let lifts = supports.is_some_and(|field| support::may_lift_off(&field));
+        let mut preset = Table::parse(fidelity.preset(), Origin::Preset, &source)?;
+        for (_, text) in [(lifts, LIFTING), (grows, GROWTH)].iter().filter(|(holds, _)| *holds) {
+            preset = Table::parse(text, Origin::Preset, &source)?.over(preset);
+        }
+        let table = own.over(preset);
         Ok(Self { table, fidelity, delamination, grows, source })
     }
 }

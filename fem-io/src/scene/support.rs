@@ -208,6 +208,12 @@ pub(super) fn read_all(field: &SceneValue<'_>) -> Result<Vec<Support>, SceneErro
     field.list()?.iter().map(read).collect()
 }
 
+/// Whether one of the supports only pushes; of those that can be read.
+pub(super) fn may_lift_off(field: &SceneValue<'_>) -> bool {
+    let pushes = |support: &Support| matches!(support, Support::Kind { kind: SupportKind::Rest, .. });
+    field.list().is_ok_and(|all| all.iter().filter_map(|field| read(field).ok()).any(|support| pushes(&support)))
+}
+
 fn read(field: &SceneValue<'_>) -> Result<Support, SceneError> {
     let table = field.table_of(SUPPORTS)?;
     let place = table.place().clone();

@@ -235,7 +235,7 @@ impl Pace {
                 let mut q = state.u[..system.structure().ndof()].to_vec();
                 let rates = modal.dampings().iter().zip(modal.stiffnesses()).zip(&state.v);
                 q.iter_mut().zip(rates).for_each(|(q, ((c, k), v))| *q += c / k * v);
-                let reliefs = system.reliefs(&state.u).collect();
+                let reliefs = system.reliefs(&state.u);
                 see(Instant { q, forces: each, reliefs, stiffness: stiffness(system, &state) });
             }
             companion.forces.push(all);
