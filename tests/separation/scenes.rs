@@ -131,6 +131,37 @@ fn delaminations_take_force_and_energy() {
     assert!(since > 20e-6 && since < 400e-6, "{since}");
 }
 
+/// A uniform traction pulls the corners of quadratic cells the other way: what acts on the middles of their sides counts as well, and
+/// they open in time.
+#[test]
+fn quadratic_cells_open_as_cubic_ones() {
+    let plate = Plate {
+        ply_mm: 0.5,
+        material: "library = 'IM7/8552'\nZt = '30 MPa'\nS13 = '50 MPa'\n",
+        mass_kg: 0.2,
+        step_us: 2.0,
+        end_us: 700,
+        hold: "kind = 'clamped'",
+        ..Plate::new()
+    };
+    let of = |element: &str, symmetry: &str| {
+        let text = plate.text().replace("'hermite-prism'", element).replace("symmetry = 'quarter'\n", symmetry);
+        let scene = scene::parse(&text, &root().join("scene.toml")).unwrap();
+        let model = Model::new(scene, &Registry::standard()).unwrap();
+        impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap()
+    };
+    let [cubic, quadratic] = ["'hermite-prism'", "'hex20'"].map(|element| of(element, "symmetry = 'quarter'\n"));
+    assert_eq!((&cubic.stopped, &quadratic.stopped), (&None, &None));
+    let ratio = |a: f64, b: f64| a / b - 1.0;
+    let [one, other] = [&cubic, &quadratic].map(grown);
+    let (area, lost) = (ratio(other.projected, one.projected), ratio(other.dissipated.total(), one.dissipated.total()));
+    assert!(area.abs() < 0.25 && lost.abs() < 0.2, "{area} {lost}");
+    // What belongs to a corner on a line of symmetry is that of both halves.
+    let whole = of("'hex20'", "");
+    let same = ratio(grown(&whole).dissipated.total(), other.dissipated.total());
+    assert!(same.abs() < 1e-9, "{same:e}");
+}
+
 /// A closed interface is rigid: without damage nothing has changed, whichever cells the tractions have opened but for their penalty.
 #[test]
 fn what_does_not_open_is_the_elastic_plate() {

@@ -18,6 +18,7 @@ use crate::plates::plate::Plate;
 use crate::plates::springs::SupportSpring;
 use crate::words::counters::Counters;
 use crate::words::energy::Energy;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -117,6 +118,8 @@ pub struct Separable {
     parts: SeparableParts,
     /// States of each cell of the interfaces.
     first: Vec<usize>,
+    /// What of the forces beside the corners of cells belongs to them.
+    beside: BTreeMap<usize, Vec<(usize, f64)>>,
     threads: NonZeroUsize,
     /// K and M of both sides.
     k: Symmetric,
@@ -210,8 +213,10 @@ impl Separable {
         let maps = interfaces.cells().iter().map(map).collect();
         let tied = Tied::new(&parts, open_cells(&first, states), threads)?;
         let released = Released::new(&k, &m, &parts.motions);
+        let beside = growth::beside(&parts.plate);
         Ok(Self {
             parts,
+            beside,
             first,
             threads,
             k,

@@ -3,6 +3,7 @@
 use super::Separable;
 use crate::contracts::interface_law::Jump;
 use crate::plates::interfaces::Interfaces;
+use crate::plates::plate::Plate;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// When interfaces are opened.
@@ -18,14 +19,27 @@ pub struct Growth {
     pub trigger: f64,
 }
 
+/// Columns beside the corner columns of a plate, and what of the forces there belongs to those, for as many of each as their symmetry makes.
+pub(super) fn beside(plate: &Plate) -> BTreeMap<usize, Vec<(usize, f64)>> {
+    let of = |column: usize| plate.symmetry().column(column as u32);
+    let mut images: BTreeMap<u32, f64> = BTreeMap::new();
+    (0..plate.columns.len()).for_each(|column| *images.entry(of(column)).or_default() += 1.0);
+    let mut beside = plate.columns_beside();
+    for (corner, others) in &mut beside {
+        others.iter_mut().for_each(|(other, share)| *share *= images[&of(*corner)] / images[&of(*other)]);
+    }
+    beside
+}
+
 /// How much farther than it must an opening goes, because each costs a factorisation.
 const AHEAD: f64 = 1.5;
 
 impl Separable {
     /// Opens the closed cells near damage and near what is about to be, in `states`, with the tractions that they carry.
     ///
-    /// Of the forces that the cells above exert at a node of the interface, divided by the area of the node, the traction is linear in
-    /// each cell. It is not that of the closed interface, which is singular at its border, but what that comes to.
+    /// Of the forces that the cells above exert at a corner of the interface, divided by its area, the traction is linear in
+    /// each cell. What they exert at the middle of a side is that of its ends: a uniform traction pulls the corners of quadratic cells
+    /// the other way. It is not that of the closed interface, which is singular at its border, but what that comes to.
     pub(super) fn grow(&mut self, u: &[f64], states: &mut [f64]) {
         let tractions = self.nodal_tractions(u);
         let growth = self.parts.growth;
@@ -111,11 +125,16 @@ impl Separable {
         }
         for ((column, face), node) in &mut nodes {
             let area = areas[&(symmetry.column(*column as u32), *face)];
+            let beside = self.beside.get(column).map_or(&[][..], Vec::as_slice);
             for (slot, n) in [(0, 3), (1, 1), (2, 2)] {
-                let Some(above) = plate.above(*column, *face, n) else { continue };
-                let sum: f64 = parts.constraints.row(above).0.iter().map(|(i, c)| c * force[*i]).sum();
+                let terms = |column: usize| Some(parts.constraints.row(plate.above(column, *face, n)?).0);
+                let pull = |terms: &[(usize, f64)]| terms.iter().map(|(i, c)| c * force[*i]).sum::<f64>();
+                let Some(own) = terms(*column) else { continue };
+                // What is held has no force here, which those beside it would be short of.
+                let free = beside.iter().filter(|_| !own.is_empty());
+                let others: f64 = free.filter_map(|(other, share)| Some(share * pull(terms(*other)?))).sum();
                 // What the interface does to the layer above balances what its cells do.
-                node[slot] = -sum / area;
+                node[slot] = -(pull(own) + others) / area;
             }
         }
         nodes

@@ -3,6 +3,7 @@
 use super::{Plate, ZDerivatives};
 use crate::plates::constraint::Equation;
 use crate::words::dof::Dof;
+use std::collections::BTreeMap;
 
 /// Unknowns of the displacements on the two sides of a face between layers, over a quad; where a node cannot separate both are the
 /// same.
@@ -131,6 +132,30 @@ impl Plate {
         let at = move |[r, s]: &[f64; 2]| layout.places.iter().position(|place| *place == [*r, middle * s]);
         let places = layout.info.domain.corners().iter().filter_map(at);
         places.map(move |place| self.columns_of_quad(quad)[place])
+    }
+
+    /// Columns with nodes that are no corners, by the corner columns of their cells, and how far those move with a corner in a motion
+    /// that is linear along each side: half as far in the middle of one.
+    pub fn columns_beside(&self) -> BTreeMap<usize, Vec<(usize, f64)>> {
+        let mut shares: BTreeMap<[u32; 2], f64> = BTreeMap::new();
+        for quad in 0..self.plane.quads.len() {
+            let layout = self.layout(quad);
+            let corners: Vec<u32> = self.corner_columns(quad).collect();
+            let of_corners = layout.info.domain.corners().len();
+            if corners.len() < of_corners || layout.places.len() == of_corners {
+                continue;
+            }
+            for (place, column) in layout.places.iter().zip(self.columns_of_quad(quad)) {
+                let others = corners.iter().zip(layout.info.domain.vertex_functions(*place));
+                let others = others.filter(|(corner, share)| *corner != column && *share > 0.0);
+                shares.extend(others.map(|(corner, share)| ([*corner, *column], share)));
+            }
+        }
+        let mut of_corner: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
+        for ([corner, column], share) in shares {
+            of_corner.entry(corner as usize).or_default().push((column as usize, share));
+        }
+        of_corner
     }
 
     /// The displacement along axis `n`, counted from 1, of the layer above a node that may separate.
