@@ -188,13 +188,17 @@ fn apart(forces: &BTreeMap<i64, f64>, fine: &BTreeMap<i64, f64>) -> f64 {
     (difference / shared.iter().map(|(_, b)| b * b).sum::<f64>()).sqrt()
 }
 
+/// The template of a drop weight.
+fn drop_weight() -> Case {
+    let folder = tempfile::tempdir().unwrap();
+    fem(folder.path(), &["new", "dw", "--template", "drop-weight"]).good();
+    support::plate().text(&std::fs::read_to_string(folder.path().join("dw/scene.toml")).unwrap())
+}
+
 /// Steps that do not show the ripple of the force: what two of them differ by says nothing of a shorter one.
 #[test]
 fn long_steps_are_said_to_be_long() {
-    let folder = tempfile::tempdir().unwrap();
-    fem(folder.path(), &["new", "dw", "--template", "drop-weight"]).good();
-    let scene = std::fs::read_to_string(folder.path().join("dw/scene.toml")).unwrap();
-    let case = support::plate().text(&scene);
+    let case = drop_weight();
     let of = |step: &str| {
         let step = format!("march.step={step}");
         sampled(&case, &[&step, "effects.damage=off", "output.plots=false", "output.history_every=32 us"])
@@ -210,10 +214,7 @@ fn long_steps_are_said_to_be_long() {
 /// the one that is taken where a scene names none does not.
 #[test]
 fn plates_that_rattle_are_marched_by_default() {
-    let folder = tempfile::tempdir().unwrap();
-    fem(folder.path(), &["new", "dw", "--template", "drop-weight"]).good();
-    let scene = std::fs::read_to_string(folder.path().join("dw/scene.toml")).unwrap();
-    let case = support::plate().text(&scene);
+    let case = drop_weight();
     let rest = ["support.1.kind=rest", "support.1.at=bottom", "mesh.plate.size=3.6 mm", "march.end=1 ms"];
     let quiet = ["effects.damage=off", "output.plots=false", "output.history_every=4 us"];
     let of = |step| sampled(&case, &[&rest[..], &quiet, &[step]].concat());
